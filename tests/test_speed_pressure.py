@@ -14,12 +14,12 @@ from puck_tables import CurlingLaw, SpeedLaw, StribeckLaw, Table, law_of, profil
 from puck_tables.contact.base import Base
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.law_moments import law_moments, packed_law
+from puck_tables.contact.round_load import load_of_law
 from puck_tables.kernels.base_clipping import whole_contour
 from puck_tables.kernels.base_friction import REACH, packed, under_load
 from puck_tables.kernels.elliptic_sums import Ellipse
 from puck_tables.kernels.law_sums import law_sums
 from puck_tables.kernels.speed_quadrature_kernel import FINE
-from puck_tables.table.speed_build import load_under
 from puck_tables.table.speed_grid import patches_of, rays_under
 from puck_tables.table.speed_patch import FilledPatch, truth_at
 from puck_tables.table.speed_table import SpeedTable
@@ -155,7 +155,7 @@ def test_under_an_annulus_it_is_the_sum_along_the_contour(law, off, inner, outer
 @pytest.mark.parametrize("pressure", few(2, ["annulus:0.8", PROFILE]))
 def test_between_rays_the_order_is_that_of_the_splines(pressure):
     """A smooth law, all patches halved alike."""
-    load = load_under(ICE, pressure, 1.0)
+    load = load_of_law(pressure, 1.0, ICE)
     breaks, rays = np.array([0.0, 0.3, 1.5]), rays_under(ICE, load)
     rng = np.random.default_rng(1)
     phi, share = rng.uniform(0.0, np.pi / 2, 600), rng.random(600) ** 0.5

@@ -14,14 +14,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from puck_tables._core.arrays import FloatArray
+from puck_tables._core.arrays import FloatArray, real
 from puck_tables.contact.base import Base
+from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import THINNEST, Law, law_of
+from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 
 # how a load is spread over circles: on one, by a profile, or (n + 1) cosⁿθ sin θ dθ, ρ = sin θ
 ALONE, PROFILE = -2.0, -1.0
 _POWERS = {"ring": ALONE, "galin": 0.0, "hertz": 2.0}
+_LEAST_REACH = 1e-3  # of the radius
 _THIN = 0.999  # of the radius is the hole: from here on discs cancel, circles do not
 
 
@@ -123,3 +126,25 @@ def load_of(base: Base, radius: float) -> RoundLoad | None:
     if discs[1][3] > 0.0 or inner > THINNEST:
         return None
     return RoundLoad(law_of(f"annulus:{inner!r}"), discs[0][2] / radius)
+
+
+def load_of_law(pressure: str | Law, reach: float, friction: object) -> RoundLoad:
+    """The load of a pressure law on a part of the radius, as a friction law is tabulated under it.
+
+    Raises InputError if it is none, or friction under it is not known.
+
+    >>> load_of_law("annulus:0.5", 1.0, SpeedLaw([0.0, 1.0], [0.2, 0.3])).edges
+    (0.5, 1.0)
+    """
+    part = real("reach", reach, "a share of the radius")
+    if not _LEAST_REACH <= part <= 1.0:
+        raise InputError(
+            f"reach must be from {_LEAST_REACH:g} to 1 (of the radius to the rim), got {part:g}"
+        )
+    load = RoundLoad(pressure if isinstance(pressure, Law) else law_of(pressure), part)
+    if not isinstance(friction, SpeedLaw | FrictionLaw) and not len(load.discs):
+        raise InputError(
+            f"under the pressure law {load.law.name} a friction law must be one of points "
+            "(SpeedLaw) or by name, not a function"
+        )
+    return load

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from puck_tables._core.arrays import real, rounded_up
+from puck_tables._core.arrays import rounded_up
 from puck_tables._core.executor import run_chunks
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law as PressureLaw
 from puck_tables.contact.laws import law_of
-from puck_tables.contact.round_load import RoundLoad
+from puck_tables.contact.round_load import RoundLoad, load_of_law
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.contact.speed_quadrature import speed_integrals
-from puck_tables.errors import AccuracyError, InputError
+from puck_tables.errors import AccuracyError
 from puck_tables.kernels.speed_quadrature_kernel import COARSE, FINE
 from puck_tables.table.build import checked_accuracy
 from puck_tables.table.check import Accuracy
@@ -28,7 +28,6 @@ DEFAULT_ACCURACY = 1e-6  # of f
 FINEST_ACCURACY = 1e-13  # of f: finer is rounding
 _FINEST_OF_OTHERS = 1e-9  # of f, under an annulus or a ring
 _FINEST_OF_CIRCLES = 1e-8  # of f, under piles of circles: a node takes half a millisecond
-LEAST_REACH = 1e-3  # of the radius
 MAX_NODES = 2_000_000  # more is an accuracy out of reach
 MAX_OF_CIRCLES = 300_000  # the same under those
 _NEXT = 0.03  # of the largest error: refined in the same round
@@ -58,7 +57,7 @@ def tabulated(
     >>> made["accuracy"].worst < 1e-8, float(made["breaks"][-1])
     (True, 3.0)
     """
-    load = load_under(law, pressure, reach)
+    load = load_of_law(pressure, reach, law)
     accuracy = checked_accuracy(
         accuracy, DEFAULT_ACCURACY, finest_accuracy(load), "of the largest f"
     )
@@ -73,12 +72,11 @@ def tabulated(
     own = RoundLoad(law_of("uniform")) if piled else load
     rules = COARSE if isinstance(law, FrictionLaw) and accuracy >= _COARSE_FROM else FINE
     parts = [
-        FilledPatch(patch, law, own, largest or 1.0, n, rules)
-        for n, patch in enumerate(patches)
-    ]  # fmt: skip
+        FilledPatch(patch, law, own, largest or 1.0, n, rules) for n, patch in enumerate(patches)
+    ]
     share, told = 0.0, 0.0
 
-    def tell() -> None:
+    def tell(*_: int) -> None:
         nonlocal share, told
         if progress is not None and time.monotonic() >= told + _BETWEEN_WORDS:
             told = time.monotonic()
@@ -97,10 +95,15 @@ def tabulated(
                 break
             chosen.append(part)
         if not chosen:
-            raise _out_of_reach(parts, accuracy, growth)
+            break
         _each(chosen, lambda part: part.refine(part.lacks(goal)), tell)
     if not all(part.good(goal) for part in parts):
-        raise _out_of_reach(parts, accuracy, growth)
+        reached = rounded_up(_CLOSE * _SAFETY * growth * max(part.badness for part in parts))
+        raise AccuracyError(
+            f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
+            f"corners: {reached:g} can be reached",
+            reachable=reached,
+        )
     cells = np.array([part.cells for part in parts], np.int64)
     return {
         "values": np.concatenate([part.values.reshape(-1, 4) for part in parts]),
@@ -109,28 +112,6 @@ def tabulated(
         "law": law if isinstance(law, SpeedLaw | FrictionLaw) else None,
         "pressure": load.law, "reach": load.reach,
     }  # fmt: skip
-
-
-def load_under(law: Law, pressure: str | PressureLaw, reach: float) -> RoundLoad:
-    """The load of a pressure law on a part of the radius.
-
-    Raises InputError if it is none, or friction under it is not known.
-
-    >>> load_under(SpeedLaw([0.0, 1.0], [0.2, 0.3]), "annulus:0.5", 1.0).edges
-    (0.5, 1.0)
-    """
-    part = real("reach", reach, "a share of the radius")
-    if not LEAST_REACH <= part <= 1.0:
-        raise InputError(
-            f"reach must be from {LEAST_REACH:g} to 1 (of the radius to the rim), got {part:g}"
-        )
-    load = RoundLoad(pressure if isinstance(pressure, PressureLaw) else law_of(pressure), part)
-    if not isinstance(law, SpeedLaw | FrictionLaw) and not len(load.discs):
-        raise InputError(
-            f"under the pressure law {load.law.name} a friction law must be one of points "
-            "(SpeedLaw) or by name, not a function"
-        )
-    return load
 
 
 def finest_accuracy(load: RoundLoad) -> float:
@@ -145,22 +126,9 @@ def finest_accuracy(load: RoundLoad) -> float:
     return FINEST_ACCURACY if len(load.discs) == 1 else _FINEST_OF_OTHERS
 
 
-def _each(
-    parts: list[FilledPatch], work: Callable[[FilledPatch], None], tell: Callable[[], None]
-) -> None:
+def _each(parts: list[FilledPatch], work: Callable[[FilledPatch], None], tell: Progress) -> None:
     """Do it to every patch, on several threads."""
-    run_chunks(
-        lambda start, _: work(parts[start]), len(parts), 1, progress=lambda done, total: tell()
-    )
-
-
-def _out_of_reach(parts: list[FilledPatch], accuracy: float, growth: float) -> AccuracyError:
-    reached = _CLOSE * _SAFETY * growth * max(part.badness for part in parts)
-    return AccuracyError(
-        f"an accuracy of {accuracy:g} is out of reach for this friction law with its "
-        f"corners: {rounded_up(reached):g} can be reached",
-        reachable=rounded_up(reached),
-    )
+    run_chunks(lambda start, _: work(parts[start]), len(parts), 1, progress=tell)
 
 
 def largest_f(law: Law, top: float) -> float:
