@@ -298,6 +298,7 @@ def test_what_a_belt_carries_over_an_edge_tips_where_its_load_is():
         ).simulate()
         assert run.end in ("over the edge", "tipped over") and abs(run.last["x"]) < 1e-3
         assert abs(run.energy_residual) < 1e-9 and "tips" in str(run)
+        assert run.last["work_support"] == run.last["heat_dry"] == 0.0  # one belt, at its velocity
 
 
 def on_feet(state: np.ndarray, edge: float) -> np.ndarray:

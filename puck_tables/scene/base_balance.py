@@ -224,6 +224,8 @@ def rub_at_rest(floor_map: FloatArray, mx: float, my: float) -> tuple[float, flo
 @inlined
 def heat_at_rest(floor_map: FloatArray, fx: float, fy: float) -> float:
     """The heat of other belts under who rests, where the floor does the force (fx, fy) to it."""
+    if not is_rubbed(floor_map, floor_map[int(floor_map[BASE]) + REACH]):
+        return 0.0  # also as it tips, where nothing is known of its pressure
     return rub_at_rest(floor_map, -floor_map[LEVER] * fx, -floor_map[LEVER] * fy)[3]
 
 
