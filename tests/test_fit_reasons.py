@@ -152,7 +152,11 @@ def test_other_readings_are_followed_about_as_far_as_they_tell(monkeypatch):
     place = np.stack([path.x, path.y], axis=1)
     place += np.random.default_rng(1).normal(0.0, 3e-4, place.shape)
     steps, step = [], Problem.residuals_and_jacobian
-    counted = lambda *args: steps.append(1) or step(*args)  # noqa: E731
+
+    def counted(problem, x):
+        steps.append(x)
+        return step(problem, x)
+
     monkeypatch.setattr(Problem, "residuals_and_jacobian", counted)
     found = pt.fit(pt.Track(times, place, path.orientation), pt.Puck(radius=0.0381))
     assert found["friction"].value == pytest.approx(0.15, abs=1e-8)

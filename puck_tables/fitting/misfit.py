@@ -109,7 +109,7 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
-    problem = replace(problem, level=ROUGH)
+    problem = replace(problem, level=ROUGH)  # residuals are compared, not numbers
     for film, launch in zip(problem.films, result.problem.launches(result.x), strict=False):
         _, _, vx, vy, spin, _ = launch.tolist()
         spins = problem.spec.known()["radius"] * abs(spin) > _SPINS * math.hypot(vx, vy)

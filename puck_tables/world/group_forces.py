@@ -16,7 +16,6 @@ from puck_tables.scene.ingredients import (
     FREE,
     Body,
     DryFriction,
-    VelocityConstraint,
     floor_acceleration,
     floor_velocity,
 )
@@ -42,17 +41,11 @@ from puck_tables.world.group import (
     GroupBuffer,
     IntArray,
 )
-from puck_tables.world.holds import led
+from puck_tables.world.holds import constraint_on, led
 from puck_tables.world.layout import (
     DECEL,
     DRAG,
     HOLD,
-    HOLD_ANGLE,
-    HOLD_REACH,
-    HOLD_VX,
-    HOLD_VY,
-    HOLD_X,
-    HOLD_Y,
     LIGHTNESS,
     PULL_X,
     PULL_Y,
@@ -335,10 +328,7 @@ def excess_on(
     if kind == FREE:
         excess, ux, uy, w = free_yield(friction, disc[RADIUS], fx, fy, torque, False)
         return excess / load, ux, uy, w
-    hold = VelocityConstraint(
-        kind, disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE], disc[HOLD_VX],
-        disc[HOLD_VY],
-    )  # fmt: skip
+    hold = constraint_on(disc)
     body = Body(1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY], disc[RADIUS])
     excess, ux, uy, w = constrained_yield(
         friction, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True

@@ -19,6 +19,7 @@ from puck_tables.scene.ingredients import (
     PIVOT,
     RAIL,
     Surface,
+    VelocityConstraint,
     floor_acceleration,
     floor_velocity,
 )
@@ -34,6 +35,15 @@ from puck_tables.world.layout import (
     LIGHTNESS,
     TURNABILITY,
 )
+
+
+@inlined
+def constraint_on(disc: FloatArray) -> VelocityConstraint:
+    """The constraint of a disc."""
+    return VelocityConstraint(
+        int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
+        disc[HOLD_VX], disc[HOLD_VY],
+    )  # fmt: skip
 
 
 @inlined

@@ -12,7 +12,6 @@ from puck_tables.scene.ingredients import (
     DryFriction,
     Model,
     Surface,
-    VelocityConstraint,
     is_mixed,
     is_over_belts,
     surface_at,
@@ -24,15 +23,9 @@ from puck_tables.world.floor_under import (
     floor_of,
     moves_along,
 )
+from puck_tables.world.holds import constraint_on
 from puck_tables.world.layout import (
     DRAG,
-    HOLD,
-    HOLD_ANGLE,
-    HOLD_REACH,
-    HOLD_VX,
-    HOLD_VY,
-    HOLD_X,
-    HOLD_Y,
     LIGHTNESS,
     PULL_X,
     PULL_Y,
@@ -54,11 +47,8 @@ def model_of(engine: Engine, i: int) -> Model:
         mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,
         disc[DRAG:],
     )  # fmt: skip
-    hold = VelocityConstraint(
-        int(disc[HOLD]), disc[HOLD_X], disc[HOLD_Y], disc[HOLD_REACH], disc[HOLD_ANGLE],
-        disc[HOLD_VX], disc[HOLD_VY],
-    )  # fmt: skip
-    return Model(Body(mass, inertia, disc[RADIUS]), floor_of(engine.surface, disc), forces, hold)
+    body, floor = Body(mass, inertia, disc[RADIUS]), floor_of(engine.surface, disc)
+    return Model(body, floor, forces, constraint_on(disc))
 
 
 @inlined
