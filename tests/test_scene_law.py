@@ -153,7 +153,8 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
     path = law(tmp_path, [(0.0, 0.2), (0.7, 0.1), (2.0, 0.15)])
     scene = tmp_path / "scene.toml"
     scene.write_text(
-        f"[puck]\nradius = 0.04\n[floor]\nlaw = {path!r}\n[launch]\nvelocity = [1.0, 0.0]\n"
+        f"[puck]\nradius = 0.04\npressure = 'ring'\n[floor]\nlaw = {path!r}\n"
+        "[launch]\nvelocity = [1.0, 0.0]\n"
     )
     words = ["simulate", "--scene", str(scene), "--w0", "9", "--tol", "1e-5"]
     said = []
@@ -172,6 +173,24 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
     assert "is damaged, or another table than its name says: it is built again" in done.stderr
 
 
+@pytest.mark.parametrize("puck", [pt.Puck(0.04, height=0.02), pt.Puck(0.04, pressure="annulus:0.6")])
+def test_many_launches_look_up_the_law_that_a_few_sum(puck):
+    floor, launch = pt.Floor(law=pt.StribeckLaw(0.3, 0.1, speed=0.2)), pt.Launch((0.8, 0.1))
+
+    def swept(every):
+        speeds, spins = np.linspace(0.0, 1.0, 50)[::every], np.linspace(-30.0, 30.0, 100)[::every]
+        ranges = {"launch.velocity[0]": speeds, "launch.spin": spins}
+        before = _kept_table.cache_info()
+        found = pt.Scene(puck, floor, launch, tol=1e-7, ranges=ranges).sweep()
+        return found, _kept_table.cache_info() != before
+
+    (few, looked_up), (many, built) = swept(7), swept(1)
+    assert (looked_up, built) == (False, True)
+    for name, unit in (("x", 1.0), ("y", 1.0), ("end_time", 1.0), ("orientation", puck.radius)):
+        missed = unit * np.abs(getattr(many, name)[::7, ::7] - getattr(few, name))
+        assert 0.0 < missed.max() < 1e-8
+
+
 @pytest.mark.thorough
 def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they_do(
     tmp_path, monkeypatch
@@ -179,7 +198,8 @@ def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they
     monkeypatch.setattr(speed_build, "MAX_NODES", 100_000)
     rows = [(0.0, 0.3), (0.3, 0.3), (0.301, 0.1), (2.0, 0.1)]
     floor = {"law": law(tmp_path, rows)}
-    scene = {"puck": {"radius": 0.04}, "floor": floor, "launch": LAUNCH}
+    puck = {"radius": 0.04, "pressure": "annulus:0.5"}
+    scene = {"puck": puck, "floor": floor, "launch": LAUNCH, "tol": 9e-10}
     with pytest.raises(
         pt.errors.AccuracyError, match=r"out of reach of a table of .*with its corners"
     ) as refused:

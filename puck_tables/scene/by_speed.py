@@ -27,7 +27,7 @@ from puck_tables.table.table_store import table_for
 Points = tuple[tuple[float, float], ...]
 
 LAW_SHARE = 0.1  # of the error wanted: of the friction at any slip, in units of f N
-UNDER_LAW_ERROR = 1e-10  # of integrals of a law over a base that is not round
+UNDER_LAW_ERROR = 1e-10  # of sums of a law along the contour of a base, in the same units
 NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
 FARTHER = 4.0  # a law by name holds at all speeds: its table goes on as needed
 _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
@@ -107,8 +107,7 @@ def law_table(
     """
     try:
         with _one_at_a_time:
-            accuracy = max(LAW_SHARE * scene.tol, finest_accuracy(load))
-            return _kept_table(key_of(law), accuracy, top, load)
+            return _kept_table(key_of(law), law_accuracy(scene.tol, load), top, load)
     except AccuracyError as error:
         if error.reachable is None:
             raise
@@ -139,14 +138,6 @@ def _first_top(law: SpeedLaw | FrictionLaw, fastest: float) -> float:
     return float(2.0 ** math.ceil(math.log2(room)))
 
 
-def law_error(scene: SceneSpec) -> float:
-    """How wrong friction by slip speed may be under a puck, in units of the largest."""
-    load = None if has_laws_by_place(scene.floor) else load_under(scene.puck)
-    if load is None:
-        return UNDER_LAW_ERROR
-    return max(LAW_SHARE * scene.tol, finest_accuracy(load))
-
-
 def load_under(puck: PuckSpec) -> RoundLoad | None:
     """The round load of a puck; None: its base is another, friction is summed along its contour.
 
@@ -159,6 +150,18 @@ def load_under(puck: PuckSpec) -> RoundLoad | None:
     if puck.shape is not None:
         return load_of(puck.shape, puck.radius)
     return RoundLoad(puck.body.law)
+
+
+def law_accuracy(tol: float, load: RoundLoad) -> float:
+    """How wrong a table of a friction law under a load may be, in units of its largest f.
+
+    ``tol``: the error wanted of the motion.
+
+    >>> from puck_tables import Puck
+    >>> law_accuracy(1e-6, load_under(Puck(0.1)))
+    1e-07
+    """
+    return max(LAW_SHARE * tol, finest_accuracy(load))
 
 
 def law_name(scene: SceneSpec) -> str:

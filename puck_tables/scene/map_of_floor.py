@@ -17,7 +17,7 @@ from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.kernels.base_friction import packed, packed_round
 from puck_tables.kernels.pressed_part import NARROWEST
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.by_speed import key_of, moments_of
+from puck_tables.scene.by_speed import LAW_SHARE, UNDER_LAW_ERROR, key_of, moments_of
 from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
     belts_of,
@@ -35,6 +35,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, line_of
 
 _NO_EDGES = np.empty((0, 3))
+MANY = 5000  # launches, from which on a table of a friction law pays
 
 
 def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArray:
@@ -193,7 +194,25 @@ def follows_contour(scene: SceneSpec, top: float = 0.0) -> bool:
         plain = two.fixed_to == "floor" and puck.body.law.name == "uniform"
         if not plain or does_turn(floor):
             return True
-    elif not floor.law and not has_sums(floor, puck.height):
+    elif floor.law:
+        return _pressed_base(puck) is not None
+    elif not has_sums(floor, puck.height):
         return False
     base = _pressed_base(puck) if puck.height > 0.0 else None
     return base is not None and _lifts(scene, base, top)
+
+
+def sums_law(scene: SceneSpec, top: float, runs: int = 1) -> bool:
+    """Whether friction by slip speed is summed under its puck where it could be looked up.
+
+    A table takes seconds to build, and a quarter of the time to read: it is for many runs, for
+    errors that sums do not promise, and for pressures without sums.
+    ``top``: up to which slip speed the law is looked at, m/s; ``runs``: that share it.
+
+    >>> from puck_tables import Floor, Puck, Scene, StribeckLaw
+    >>> scene = Scene(Puck(0.04), Floor(law=StribeckLaw(0.3, 0.1, speed=0.2)))
+    >>> sums_law(scene, 1.0), sums_law(scene, 1.0, runs=10_000)
+    (True, False)
+    """
+    few = runs < MANY and LAW_SHARE * scene.tol >= UNDER_LAW_ERROR
+    return follows_contour(scene, top) and (few or may_lift(scene, top))

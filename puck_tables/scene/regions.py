@@ -13,9 +13,15 @@ from puck_tables.kernels.quadratic import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.by_speed import law_error, laws_in
-from puck_tables.scene.floor_parts import directions_in
-from puck_tables.scene.map_of_floor import follows_contour
+from puck_tables.scene.by_speed import (
+    UNDER_LAW_ERROR,
+    law_accuracy,
+    law_top,
+    laws_in,
+    load_under,
+)
+from puck_tables.scene.floor_parts import directions_in, has_laws_by_place
+from puck_tables.scene.map_of_floor import follows_contour, sums_law
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.table.friction_section import FINEST_ACCURACY
@@ -53,7 +59,9 @@ def friction_error(scene: SceneSpec) -> float:
     """How wrong the friction ratios under the puck of a scene may be."""
     puck = scene.puck
     if laws_in(scene):
-        return law_error(scene)
+        top, by_place = law_top(scene, 0.0), has_laws_by_place(scene.floor)
+        load = None if by_place or sums_law(scene, top) else load_under(puck)
+        return UNDER_LAW_ERROR if load is None else law_accuracy(scene.tol, load)
     if directions_in(scene.floor):
         return DIRECTION_ERROR
     if follows_contour(scene):

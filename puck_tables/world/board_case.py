@@ -67,17 +67,17 @@ _ON_EDGE = 1e-6  # of the radius: who left play there left it over an edge, or i
 class BoardCase:
     """A board of which only launches still vary.
 
-    ``model``, ``explanation``: how its pucks are moved.
+    ``runs``: of how many launches; ``model``, ``explanation``: how its pucks are moved.
 
     Raises InputError if nothing on it ever comes to rest, and no time is given.
     """
 
-    def __init__(self, scene: SceneSpec) -> None:
-        self.scene, self.pucks = scene, pucks_of(scene)
+    def __init__(self, scene: SceneSpec, runs: int = 1) -> None:
+        self.scene, self.pucks, self.runs = scene, pucks_of(scene), runs
         refuse_endless(scene)
         self.model, self.explanation = plan_of(scene)
         self.until = math.inf if scene.time is None else scene.time
-        start = prepared(scene)
+        start = prepared(scene, runs=runs)
         self.engine, self.first, self.order = start.engine, start.states, start.order
         self.place = np.argsort(start.order)
         self._farther: dict[float, Engine] = {}  # by how far its friction law goes, m/s
@@ -166,7 +166,9 @@ class BoardCase:
         for farther in np.unique(tops[fastest >= top]).tolist():
             if farther not in self._farther:
                 try:
-                    own = with_law_up_to(copy_of(engine), self.scene, self.order, farther)
+                    own = with_law_up_to(
+                        copy_of(engine), self.scene, self.order, farther, self.runs
+                    )
                 except ContactError:  # it lifts part of a base: a run alone says so
                     continue
                 self._farther[farther] = own

@@ -26,7 +26,7 @@ from puck_tables.scene.floor_parts import (
 )
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
-from puck_tables.scene.map_of_floor import edges_under, floor_map_of, follows_contour, may_lift
+from puck_tables.scene.map_of_floor import edges_under, floor_map_of, follows_contour, sums_law
 from puck_tables.scene.over_time import largest_factors
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.regions import axes_of, load_limit, of_one_shape, rubs_plainly, section_of
@@ -95,11 +95,12 @@ def _row(scene: SceneSpec, puck: ScenePuck, friction: float, how: float) -> list
 
 
 def regions_of(
-    scene: SceneSpec, pucks: list[ScenePuck], floors: FloatArray, fastest: float
+    scene: SceneSpec, pucks: list[ScenePuck], floors: FloatArray, fastest: float, runs: int = 1
 ) -> Regions:
     """The dry friction of every puck everywhere: closed forms, or tables if one needs them.
 
-    ``fastest``: the fastest slip of a rim for which a friction law is to hold, m/s.
+    ``fastest``: the fastest slip of a rim for which a friction law is to hold, m/s; ``runs``: how
+    many launches it is for.
 
     Raises InputError, ContactError if the friction law cannot be read, ends below the slips at the
     launches, or lifts a base; AccuracyError if the friction of one cannot be tabulated as fine as
@@ -111,7 +112,7 @@ def regions_of(
     if has_laws_by_place(scene.floor):
         return _by_place(scene, pucks, normals, floors, fastest)
     if scene.floor.law:
-        return _by_slip(scene, pucks, normals, delta, fastest)
+        return _by_slip(scene, pucks, normals, delta, fastest, runs)
     if scene.floor.orthotropic is not None:
         axes, factor = axes_of(scene.floor.orthotropic), float(largest_factors(scene.floor)[0])
         own = [None if puck.path or _is_summed(scene, puck) else axes for puck in pucks]
@@ -197,17 +198,17 @@ def _by_place(
 
 def _by_slip(
     scene: SceneSpec, pucks: list[ScenePuck], normals: FloatArray, delta: FloatArray,
-    fastest: float,
+    fastest: float, runs: int,
 ) -> Regions:  # fmt: skip
-    """By a friction law over the slip speed: tables under round loads, integrals under others.
+    """By a friction law over the slip speed: by tables, or summed along contours.
 
     Raises InputError, AccuracyError as :func:`regions_of`; ContactError if it lifts a base.
     """
     law, top, largest = law_range(scene, fastest)
     factor = float(largest_factors(scene.floor)[0])
     largest, static = largest * factor, scene.floor.static_ratio
-    under = [  # no table knows what is pressed one-sided
-        None if puck.path or may_lift(scene.alone(puck), top) else load_under(puck)
+    under = [
+        None if puck.path or sums_law(scene.alone(puck), top, runs) else load_under(puck)
         for puck in pucks
     ]
     tables = {load: law_table(scene, law, top, load) for load in under if load is not None}

@@ -112,8 +112,10 @@ def _surface_of(floor: Floor) -> Surface:
     return Surface(vx, vy, *floor.centre, spin, 0.0, 0.0, 0.0, changes, floor.static_ratio)
 
 
-def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
+def prepared(scene: SceneSpec, order: Whole | None = None, runs: int = 1) -> Start:
     """A scene without ranges at its start; its pucks in an order, else that of their places.
+
+    ``runs``: how many launches it is for.
 
     Raises PuckError if a file or a law that it names does not serve, or numbers in it are too
     large.
@@ -150,7 +152,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None) -> Start:
             states[i, 3:5], states[i, 5] = velocity, launch.spin
     rim = fastest_rim(pucks, states, surface)
     floors = floors_of(scene, pucks, rim)
-    regions = regions_of(scene, pucks, floors, rim)
+    regions = regions_of(scene, pucks, floors, rim, runs)
     steps = 2 * LONGEST if floors[:, 2].any() else 0  # the first path, and room for another
     engine = Engine(
         discs=discs,
@@ -215,11 +217,17 @@ def _fill_disc(
         disc[layout.HEIGHT_RATIO] /= 4.0 * load.mean_square  # of uniform pressure it is 1/4
 
 
-def with_law_up_to(engine: Engine, scene: SceneSpec, order: Whole, fastest: float) -> Engine:
-    """With the table of a friction law by name for slips of the rim up to ``fastest``, m/s."""
+def with_law_up_to(
+    engine: Engine, scene: SceneSpec, order: Whole, fastest: float, runs: int = 1
+) -> Engine:
+    """With a friction law by name for slips of the rim up to ``fastest``, m/s.
+
+    ``runs``: how many launches it is for.
+    """
     pucks = [pucks_of(scene)[number] for number in order]
     floors = floors_of(scene, pucks, fastest)
-    engine = engine._replace(regions=regions_of(scene, pucks, floors, fastest), floors=floors)
+    regions = regions_of(scene, pucks, floors, fastest, runs)
+    engine = engine._replace(regions=regions, floors=floors)
     for i in range(len(pucks)):
         step_onto(engine, i)
     return engine

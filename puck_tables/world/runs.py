@@ -77,7 +77,10 @@ class Runs(Work):
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole, self.files = tables_of(scene), files_of(scene)
         self._read = files_named(self._whole) if read is None else read
-        self._inner = {one for path in self.axes for one in BoardCase.launches(scene, path)}
+        launches = {path: BoardCase.launches(scene, path) for path in self.axes}
+        self._inner = {one for paths in launches.values() for one in paths}
+        others = [self.axes[path].size or self.size for path, own in launches.items() if not own]
+        self._alike = self.size // math.prod(others)  # runs that differ in nothing but launches
         self._case = lru_cache(maxsize=8)(self._made)
 
     def __reduce__(self) -> Any:
@@ -121,7 +124,7 @@ class Runs(Work):
 
     def _made(self, numbers: tuple[tuple[str, float], ...]) -> BoardCase | InputError:
         try:
-            return BoardCase(self.scene.at(dict(numbers)))
+            return BoardCase(self.scene.at(dict(numbers)), self._alike)
         except InputError as error:
             return error
 

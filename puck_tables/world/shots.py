@@ -17,6 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.acting import acting
+from puck_tables.scene.map_of_floor import MANY
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stops import stop_on_base
 from puck_tables.world.agreement import frictions_under, is_integrated, segment_error
@@ -309,6 +310,6 @@ class Shots:
 
 def _finely(scene: SceneSpec) -> Start:
     """The start of runs whose differences are slopes: they step as finely as look-ups are good."""
-    start = prepared(scene.single())
+    start = prepared(scene.single(), runs=MANY)  # a search follows thousands
     start.engine.scale[2] = STEP_SHARE * segment_error(scene)
     return start
