@@ -173,7 +173,10 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
     assert "is damaged, or another table than its name says: it is built again" in done.stderr
 
 
-@pytest.mark.parametrize("puck", [pt.Puck(0.04, height=0.02), pt.Puck(0.04, pressure="annulus:0.6")])
+TALL, ANNULUS = pt.Puck(0.04, height=0.02), pt.Puck(0.04, pressure="annulus:0.6")
+
+
+@pytest.mark.parametrize("puck", [TALL, ANNULUS])
 def test_many_launches_look_up_the_law_that_a_few_sum(puck):
     floor, launch = pt.Floor(law=pt.StribeckLaw(0.3, 0.1, speed=0.2)), pt.Launch((0.8, 0.1))
 
