@@ -13,6 +13,7 @@ from scipy.integrate import solve_ivp
 import puck_tables as pt
 from puck_tables import Scene
 from puck_tables.motion.body import STANDARD_GRAVITY
+from puck_tables.scene import map_of_floor
 from puck_tables.scene.by_speed import _kept_table
 from puck_tables.table import speed_build
 
@@ -177,7 +178,8 @@ TALL, ANNULUS = pt.Puck(0.04, height=0.02), pt.Puck(0.04, pressure="annulus:0.6"
 
 
 @pytest.mark.parametrize("puck", [TALL, ANNULUS])
-def test_many_launches_look_up_the_law_that_a_few_sum(puck):
+def test_many_launches_look_up_the_law_that_a_few_sum(puck, monkeypatch):
+    monkeypatch.setattr(map_of_floor, "MANY", 5000)
     floor, launch = pt.Floor(law=pt.StribeckLaw(0.3, 0.1, speed=0.2)), pt.Launch((0.8, 0.1))
 
     def swept(every):

@@ -28,10 +28,11 @@ from puck_tables.fitting.problem import ROUGH, TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
-_NEAR = 0.01  # of the radius: it is not another one
+_NEAR, _LEAST = 0.01, 1e-3  # of the radius: it is not another one; units are not mixed up by more
 _BY_CHANCE = 0.5  # rad, as angles are off that nothing explains
 _AS_NOISE = 3.0  # times the noise of a place: a reading that fits
 _ROUNDING = 1e-12  # m or rad: of a film that was computed less tells nothing
+_FIRST = 2  # readings are told that are no floors, if they are among so many
 _DEGREE = math.pi / 180.0  # rad
 _ANGLES = (  # times a factor, and more by so much
     (-1.0, 0.0, "if angles, or y, grew the other way: negate one of them in the file"),
@@ -47,7 +48,6 @@ _BETTER = math.log(1.2)  # more numbers always fit a little better
 _ALIKE = math.log(1.5)  # readings that fit about as well
 _MUCH = math.log(3.0)  # so much smaller residuals tell, though they are no noise yet
 _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the noise of a place
-_MOST, _LEAST = 10.0, 1e-3  # times one friction for all speeds: laws that some floor has
 _SPINS = 0.1  # rim speed over speed: such a puck's path is seen to bend
 _FAINT = 1e-3  # of what friction does: no force explains anything by so little
 _STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that for a level table
@@ -126,18 +126,24 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         )
         law = _reading(partial(_by_speed, result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
-            law = None
-        told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)[:2]
+            law = law._replace(gain=min(law.gain, drag.gain))
+        told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)
     told += filter(None, [_reading(partial(_by_mark, result, problem))])
     told += _otherwise(result, problem)
     best = max((one.gain for one in told), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
-    near = [one for one in told if one.gain > best - _ALIKE or (one.floor and one.gain > _MUCH)]
+    near = [
+        one for one in told
+        if one.gain > best - _ALIKE or (one.floor and one.gain > max(_MUCH, best - _MUCH))
+    ]  # fmt: skip
     near.sort(
         key=lambda one: (not one.floor or (one.bends and one.gain < best - _BETTER), -one.gain)
     )
     if near:
-        words = f"{near[0].words}{f'; or {near[1].words}' if len(near) > 1 else ''}"
+        words = "; or ".join(
+            one.words for n, one in enumerate(near)
+            if one.floor or n < _FIRST or one.gain > best - _BETTER
+        )  # fmt: skip
         return f"Residuals would be {math.exp(near[0].gain):.2g} times smaller {words}"
     if forces.chance < NO_PATTERN:
         return f"What may leave such a pattern: {forces.words}"
@@ -180,7 +186,8 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
         left = _left(one.problem, one.x)
         gain = _left(result.problem, result.x).size() - left.size(scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
-        same = wider and "radius" in other.spec.free and abs(radius / given - 1.0) < _NEAR
+        same = abs(radius / given - 1.0) < _NEAR or radius < _LEAST * given
+        same = same and wider and "radius" in other.spec.free
         if gain > best.gain and not same and left.near(problem.noise[0]):
             best = _Reading(words.format(radius), gain)
     return [best] if best.words else []
@@ -260,9 +267,6 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     gain = _gain(result, _left(other.problem, other.x), problem.noise[0])
     speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
     values = [numbers[name] for name in NODES[: len(speeds)]]
-    usual = result.problem.numbers_at(result.x)["friction"]
-    if max(values) > _MOST * usual or min(values) < _LEAST * usual:  # such a law fits noise
-        return _Reading("", 0.0)
     told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
     words = (
         f"with a friction over slip speed ({told}): find it (--slip-speeds "

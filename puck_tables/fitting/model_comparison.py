@@ -38,6 +38,7 @@ _FALLS = 0.99  # of the cost before: a floor that still comes nearer is followed
 _NEAR = 3.0  # times the noise: floors that are fitted to the end
 _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
+_FAINTEST, _STRONGEST = 0.02, 10.0  # times one friction for all speeds: laws that some floor has
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
 _ALL_GIVEN = Known(True, True, True)
 
@@ -77,7 +78,9 @@ def tried(result: Estimate) -> Estimate:
     top = problem.fastest(result.x)
     speeds = tuple(float(f"{1.1 * top * share:.2g}") for share in _SHARES)
     fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
-    fewer = replace(fewer, known=_ALL_GIVEN, level=ROUGH)
+    usual = problem.numbers_at(result.x)["friction"]
+    bounds = {"friction": (_FAINTEST * usual, _STRONGEST * usual), **problem.spec.bounds}
+    fewer = replace(fewer, known=_ALL_GIVEN, level=ROUGH, spec=replace(problem.spec, bounds=bounds))
     return over_speeds(replace(result, problem=fewer), speeds, "cubic")
 
 

@@ -35,7 +35,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, line_of
 
 _NO_EDGES = np.empty((0, 3))
-MANY = 5000  # launches, from which on a table of a friction law pays
+MANY = 10_000  # launches, from which on a table of a friction law pays
 
 
 def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArray:
@@ -211,7 +211,7 @@ def sums_law(scene: SceneSpec, top: float, runs: int = 1) -> bool:
 
     >>> from puck_tables import Floor, Puck, Scene, StribeckLaw
     >>> scene = Scene(Puck(0.04), Floor(law=StribeckLaw(0.3, 0.1, speed=0.2)))
-    >>> sums_law(scene, 1.0), sums_law(scene, 1.0, runs=10_000)
+    >>> sums_law(scene, 1.0), sums_law(scene, 1.0, runs=20_000)
     (True, False)
     """
     few = runs < MANY and LAW_SHARE * scene.tol >= UNDER_LAW_ERROR
