@@ -8,6 +8,7 @@ from click.testing import CliRunner
 from puck_tables.cli.main import main
 from scenes import simulate_scene, sweep_scene
 
+import puck_tables as pt
 from puck_tables.errors import InputError
 
 
@@ -93,3 +94,29 @@ def test_names_files_and_clashes(tmp_path):
         assert result.exit_code == 2
         assert words in result.stderr
         assert "Traceback" not in result.stderr
+
+
+@pytest.mark.parametrize("tol", [1e-6, 1e-10])
+def test_a_base_beside_a_puck_of_another_pressure_has_no_table_to_agree_with(tol):
+    """Both slide straight, v²/(2 f g); it ended in a traceback of numpy."""
+    speed, f = 0.5, 0.2
+    pucks = [
+        pt.Puck(0.06, base="box:0.1x0.06", friction=f, launch=pt.Launch((speed, 0.0))),
+        pt.Puck(0.04, pressure="annulus:0.7", friction=f,
+                launch=pt.Launch((speed, 0.0), position=(0.0, 1.0))),
+    ]  # fmt: skip
+    run = pt.Scene(pucks=pucks, tol=tol).simulate()
+    assert np.abs(run.last["x"] - speed**2 / (2.0 * f * 9.80665)).max() <= 1e-9
+
+
+def test_a_force_that_grows_over_rows_moves_what_rests_whenever_it_came_to_rest():
+    """Two of ten had no end: the slip came in a step that rounding left nothing of."""
+    f, rows = 0.2, [[0.3, 0.0, 0.0], [0.6, 4.0, 0.0]]
+    slips = 0.3 + 0.3 * f * 9.80665 / 4.0
+    for k in range(10):
+        scene = pt.Scene(pt.Puck(1.0, friction=f), force=pt.Force(over_time=rows), time=0.6)
+        world = scene.world()
+        world.advance(0.13 + 1e-4 * k)
+        world.strike(0, velocity=(0.0, 0.0))  # a new path
+        world.advance(0.6 - world.time)
+        assert abs(world.state()[0, 0] - (4.0 / 0.3) * (0.6 - slips) ** 3 / 6.0) <= 1e-9

@@ -111,7 +111,8 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
     A floor is named before angles or a radius that fit about as well.  ``problem``: what was asked,
     with all frames; ``speeds``: whether a friction over slip speed does not fit, either.
     """
-    problem = replace(problem, level=ROUGH)  # residuals are compared, not numbers
+    # residuals are compared, not numbers, and of frames that were kept: a hand fits no reading
+    problem = replace(problem.with_films(result.problem.films), level=ROUGH)
     for film, launch in zip(problem.films, result.problem.launches(result.x), strict=False):
         _, _, vx, vy, spin, _ = launch.tolist()
         spins = problem.spec.known()["radius"] * abs(spin) > _SPINS * math.hypot(vx, vy)
@@ -230,7 +231,7 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
         most = _MOST_DRAG / max(float(film.time[-1]) for film in problem.films)
         bounds = {**bounds, "drag": (-most, most)}
     spec = replace(spec, free=(*spec.free, *FLOORS[floor]), bounds=bounds)
-    other = replace(problem.with_films(result.problem.films), spec=spec, tall=False)
+    other = replace(problem, spec=spec, tall=False)
     plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
     x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
     gain = _gain(result, _left(other, x), problem.noise[0])

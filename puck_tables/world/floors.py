@@ -137,10 +137,12 @@ def regions_of(
         if floors[:, 2].any():  # those that are integrated ask for friction often
             cuts = np.stack([cut(height) for _, height, _ in looks])
     else:
-        cuts = of_one_shape([
-            cut(height) if at_hand else section_of(puck, height, scene.tol)
+        own = [
+            None if at_hand else section_of(puck, height, scene.tol)
             for puck, height, at_hand in looks
-        ])  # fmt: skip
+        ]  # fmt: skip
+        any_one = next(one for one in own if one is not None)
+        cuts = of_one_shape([any_one if one is None else one for one in own])
     floor_map, several = NO_GROUND, may_be_mixed(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)

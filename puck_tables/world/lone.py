@@ -351,7 +351,8 @@ def follow_alone(
         before, failed, held = reach, False, held and mode == CARRIED
         count += parts if length > _SHORTEST * unit else 0
         passed += length
-        now = target if landed else t + passed
+        # where it slips it does: a step to there may be less than rounding leaves of ``passed``
+        now = target if landed else max(t + passed, now + length)
         h = min(h, 0.5 * (tips - now)) if now < tips else h
         over = _leads_off(engine, i, buffer) or 0.0 < tips - now < tol * unit
         _go_on_from(model, tol, buffer)
