@@ -258,6 +258,19 @@ def test_what_was_said_wrongly_is_found_out(radius, angle, words):
     assert bool(found.complaints) is bool(words)
 
 
+def test_angles_the_other_way_are_found_out_after_a_hand():
+    rng = np.random.default_rng(0)
+    times = np.arange(-36, 200) / 120.0
+    times = times[rng.random(times.size) > 0.1]
+    puck = pt.Puck(radius=0.0381, height=0.0254, friction=0.12)
+    path = puck.states((1.8, 0.4), -25.0, np.maximum(times, 0.0))  # held until 0 s
+    noise = rng.normal(size=(times.size, 3)) * [4e-4, 4e-4, 7e-3]
+    place = np.stack([path.x, path.y], axis=1) + noise[:, :2]
+    found = pt.fit(pt.Track(times, place, noise[:, 2] - path.orientation), pt.Puck(radius=0.0381))
+    assert "something seems to touch the puck" in str(found)
+    assert "if angles, or y, grew the other way" in found.misfit
+
+
 def test_two_marks_on_one_puck_are_no_two_pucks():
     turned = PATH.orientation
     away = 0.015 * np.stack([np.cos(turned), np.sin(turned)], axis=1)
