@@ -86,6 +86,19 @@ def test_a_mark_a_little_off_the_centre_is_named_first(seed):
     assert "off the centre" in found.misfit.split("; or ")[0]
 
 
+@pytest.mark.parametrize("seed", few(2, range(20)))
+def test_angles_that_turn_the_other_way_are_named_first(seed):
+    """As y grows down an image; a slope alone was blamed for the path, which follows the spin."""
+    rng = np.random.default_rng([47, seed])
+    times, delta = np.arange(96) / 160.0, rng.uniform(0.15, 0.3)
+    velocity, spin = way_of(rng, rng.uniform(1.0, 2.0)), rng.uniform(25.0, 60.0)
+    true = film_judge.path(velocity, spin, rng.uniform(1.5, 3.0), delta, 0.04, times)
+    place, angle = film_judge.noisy(rng, true, NOISE)
+    found = pt.fit(pt.Track(times, place, -angle), pt.Puck(radius=0.04))
+    assert "grew the other way" in found.misfit.split("; or ")[0]
+    assert any(text.startswith("delta") and "other way" in text for text in found.remarks)
+
+
 def test_a_height_that_no_puck_has_is_said():
     """A path on a floor that slopes sideways bends as that of a tall puck does."""
     rng = np.random.default_rng(3512)

@@ -120,3 +120,35 @@ def test_a_force_that_grows_over_rows_moves_what_rests_whenever_it_came_to_rest(
         world.strike(0, velocity=(0.0, 0.0))  # a new path
         world.advance(0.6 - world.time)
         assert abs(world.state()[0, 0] - (4.0 / 0.3) * (0.6 - slips) ** 3 / 6.0) <= 1e-9
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.1])
+def test_what_is_pushed_on_a_rough_floor_tips_where_no_pressure_balances(aside):
+    """By hand: its load lies at the front, of which s is on the rough strip; askew it was refused.
+
+    p falls to 0 over a width w from the front, or is (1 + b x)/L; friction times the height of the
+    centre is then the load's place, until s is 6.5396 mm, where no w or b is left.
+    """
+    length, low, high, z = 0.1, 0.1, 0.6, 0.15
+    wide, full = np.linspace(1e-6, length, 200_001), np.linspace(0.0, 2.0 / length, 200_001)
+
+    def is_carried(s):
+        share = np.where(wide > s, 1.0 - (1.0 - np.minimum(s / wide, 1.0)) ** 2, 1.0)
+        lifted = 0.5 * length - wide / 3.0 - z * (low + (high - low) * share)
+        share = s / length + full * s * (0.5 - 0.5 * s / length)
+        pressed = full * length**2 / 12.0 - z * (low + (high - low) * share)
+        return max(lifted.max(), pressed.max()) >= 0.0
+
+    least, most = 0.0, 0.05
+    for _ in range(40):
+        s = 0.5 * (least + most)
+        least, most = (s, most) if is_carried(s) else (least, s)
+    tall = pt.Puck(0.08, base="box:0.1x0.1", height=2.0 * z, restitution=0.0, name="tall",
+                   launch=pt.Launch((1.0, 0.0), position=(0.17, 0.0)))  # fmt: skip
+    flat = pt.Puck(0.08, restitution=0.0, force=pt.Force((2.0, 0.0)), name="flat",
+                   launch=pt.Launch((1.2, aside)))  # fmt: skip
+    floor = pt.Floor(strips=pt.Strips(borders=(0.5,), friction=(low, high)))
+    run = pt.Scene(pucks=[tall, flat], floor=floor, time=0.8).simulate()
+    assert [one.puck for one in run.events if one.what == "tip"] == ["tall"]
+    assert abs(run["tall"]["x"][-1] - (0.5 - 0.5 * length + least)) <= (1e-7, 1e-5)[aside > 0.0]
+    assert run.energy_residual < 1e-8

@@ -94,13 +94,15 @@ def _left(problem: Problem, x: FloatArray) -> _Left:
 class _Reading(NamedTuple):
     """What else may be: in words, by how much smaller residuals are, if a floor.
 
-    ``bends``: if one that bends any path, as a slope does: it comes first only if about the best.
+    ``bends``: if one that bends any path, as a slope does: it comes first only if about the best,
+    and not before angles read otherwise; ``same``: if it takes no more numbers, as these.
     """
 
     words: str
     gain: float
     floor: bool = False
     bends: bool = False
+    same: bool = False
 
 
 def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool) -> str:
@@ -136,9 +138,12 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         one for one in told
         if one.gain > best - _ALIKE or (one.floor and one.gain > max(_MUCH, best - _MUCH))
     ]  # fmt: skip
+    least = max([best - _BETTER, *(one.gain + _BETTER for one in near if one.same)])
     near.sort(
-        key=lambda one: (not one.floor or (one.bends and one.gain < best - _BETTER), -one.gain)
-    )
+        key=lambda one: (
+            not one.floor or (one.bends and one.gain < least), -one.gain - _BETTER * one.same
+        )
+    )  # fmt: skip
     if near:
         words = "; or ".join(
             one.words for n, one in enumerate(near)
@@ -161,7 +166,7 @@ def _reading(of: Callable[[], _Reading]) -> _Reading | None:
 
 def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
-    best, spec = _Reading("", math.log(_FAR)), problem.spec
+    best, spec = _Reading("", 0.0), problem.spec
     given, others = spec.known()["radius"], []
     held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
     angles = _ANGLES if spec.base is None else (*_ANGLES, _ACROSS)
@@ -184,12 +189,12 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
         except InputError:  # such a puck, or such a track, there is not
             continue
         left = _left(one.problem, one.x)
-        gain = _left(result.problem, result.x).size() - left.size(scale)
+        gain = _gain(result, left, problem.noise[0], scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
         same = abs(radius / given - 1.0) < _NEAR or radius < _LEAST * given
         same = same and wider and "radius" in other.spec.free
         if gain > best.gain and not same and left.near(problem.noise[0]):
-            best = _Reading(words.format(radius), gain)
+            best = _Reading(words.format(radius), gain, same=other.spec == spec)
     return [best] if best.words else []
 
 
@@ -204,13 +209,14 @@ def _by_mark(result: Estimate, problem: Problem) -> _Reading:
     return _Reading(words, _gain(result, _left(one.problem, one.x), problem.noise[0]), True)
 
 
-def _gain(result: Estimate, other: _Left, noise: float) -> float:
-    """By how much smaller residuals are of another floor; 0 where that tells nothing.
+def _gain(result: Estimate, other: _Left, noise: float, scale: float = 1.0) -> float:
+    """By how much smaller residuals are of another reading; 0 where that tells nothing.
 
-    It leaves far less, or no more than noise where one friction leaves more than that.  Where air
-    or a floor changes in a way that no few numbers tell it may still leave more than noise.
+    ``scale``: of its angles.  It leaves far less, or no more than noise where one friction leaves
+    more than that.  Where air or a floor changes in a way that no few numbers tell it may still
+    leave more than noise.
     """
-    gain = _left(result.problem, result.x).size() - other.size()
+    gain = _left(result.problem, result.x).size() - other.size(scale)
     clean = gain > _LITTLE and float(np.median(other.places)) / noise < _CLEAN
     fits = (gain > math.log(_FAR) or clean) and other.near(noise)
     return gain if fits or (gain > _MUCH and other.explained) else 0.0

@@ -101,8 +101,10 @@ class Remarked:
                 name = problem.names[k][1]
                 if side > 0 and name == "friction" and end == problem.spec.steepest(name):
                     way += " (with more part of the base would lift: is the height right?)"
+                if side < 0 and name == "delta" and problem.angled:  # a path turns with the spin
+                    way += " (or angles, or y, grow the other way)"
                 said.append(
-                    f"{problem.names[k][1]} lies on the end of its range, {end:.6g}: what fits "
+                    f"{name} lies on the end of its range, {end:.6g}: what fits "
                     f"best may be {way}. So it has no standard error, and its interval, and errors "
                     "and intervals of the rest, may mislead"
                 )

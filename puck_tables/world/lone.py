@@ -285,7 +285,8 @@ def follow_alone(
 
     And whether the floor carries it all along.  The pieces stand after all that there are, and what
     they did to the energies after all works, uncounted.  Where it rests for good there are none,
-    until inf; ``state`` (6,) is moved to rest.  ``work`` (38, 12): to work on.
+    until inf; ``state`` (6,) is moved to rest.  Where it cannot be, it tips by then; inf: it does
+    not.  ``work`` (38, 12): to work on.
     """
     choose_belt(engine.regions, engine.discs, i, state)
     model, buffer = model_of(engine, i), buffer_on(work)
@@ -333,6 +334,7 @@ def follow_alone(
             tips, failed = now + whole if falls else tips, failed or not falls
             h = whole * (0.25 if falls else grows)
             if h < (tol if falls else _SHORTEST) * unit:
+                tips = tips if falls else math.inf
                 break
             continue
         stuck, length = first_event_on(phase, now, whole, y, buffer.scale, stages, new)
@@ -364,4 +366,4 @@ def follow_alone(
     if count > 0 and now > t:
         return True, now, count, held
     _put_down(model, now, state, buffer)
-    return rests, math.inf, 0, True
+    return rests, tips, 0, True

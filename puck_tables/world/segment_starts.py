@@ -249,7 +249,7 @@ def integrate(engine: Engine, i: int, t: float, room: Room) -> bool:
     """The path of a disc alone, from its state, or how it tips; whether it can be followed."""
     done, until, count, held = follow_alone(engine, i, t, room.states[i], room.workspace)
     engine.group[i] = 0
-    if not done and loses_balance(engine, i, t, room):
+    if not done and (until < math.inf or loses_balance(engine, i, t, room)):
         leave(engine, i, t, TIPS, i, room)
         return True
     if until == math.inf:

@@ -189,8 +189,8 @@ def step(
             if i % 3 == 2:
                 scale /= group.discs[members[place], RADIUS]
             share = abs(h * error) / scale
-            if not share <= largest:
-                largest = share
+            if not share <= largest:  # no number stays the largest, whoever comes after
+                largest = share if share < math.inf else math.inf
     if modes.shape[0] + buffer.number[0] == 0 and not turning:
         for place in range(members.shape[0]):
             write_over(stages[END, place], stages[STAGES - 1, place])
@@ -201,6 +201,9 @@ def step(
         look_at_ties(group, members, t + h, new, buffer)
         stop_slips(buffer, modes, new)
         rates_at(group, members, modes, motions, t + h, new, END, scales, buffer)
+        for place in range(members.shape[0]):
+            if not math.isfinite(stages[END, place, 3]):  # it tips there
+                return math.inf
     return largest
 
 
