@@ -265,7 +265,7 @@ def test_what_is_not_known_is_refused(name: str) -> None:
 
 
 def test_a_belt_rubs_what_rests_on_another_by_its_friction_at_that_slip():
-    """By hand: at 0.3 m/s f is 0.24, so that 0.24 s = 0.3 (1 − s) where it slips; it was at s = ½."""
+    """By hand: f is 0.24 at 0.3 m/s; it slips where 0.24 s = 0.3 (1 − s).  It did at s = ½."""
     law = [[0.0, 0.3], [1.0, 0.1]]
     belts = pt.Floor(strips=pt.Strips((0.0,), (law, law), across=(0.5, 0.2)))
     box = pt.Puck(base="box:0.1x0.06")

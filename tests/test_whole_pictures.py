@@ -16,6 +16,8 @@ from matplotlib.text import Text
 from scenes import sweep_scene
 
 from puck_tables import (
+    Drag,
+    Floor,
     InputError,
     Launch,
     Normal,
@@ -260,6 +262,16 @@ def test_what_is_out_of_sight_is_said() -> None:
     piece = Puck(0.02, friction=0.3, launch=Launch((0.5, 0.0)))
     two = Scene(pucks=[piece], walls=[near, far]).simulate().plot()
     assert two.axes[0].get_title("left") == "out of sight: 1 wall"
+
+
+def test_how_runs_end_stands_over_the_axis_of_the_curves() -> None:
+    floor, drag = Floor(slope=np.linspace(0.0, 0.05, 120)), Drag(sliding=[0.0, 0.1])
+    launch = Launch((0.5, 0.0), spin=9.0)
+    panels = Scene(Puck(0.04, friction=0.2), floor, launch, drag=drag).sweep().plot().axes
+    assert panels[4].get_xlabel() == panels[5].get_xlabel() == "floor.slope / rad"
+    assert panels[0].get_xlim() == pytest.approx((0.0, 0.05), abs=1e-3)
+    marks = panels[0].lines[-1].get_xdata()
+    assert 60 <= len(marks) <= 80  # of 240 that end alike: they hide no curve
 
 
 def test_every_colour_is_seen_on_white() -> None:

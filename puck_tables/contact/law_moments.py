@@ -18,6 +18,12 @@ MOMENTS = 4  # f, H₁, H₂, H₃
 DEGREE = 9  # of a piece
 _NODES = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
 _PROBES = np.linspace(-1.0, 1.0, 23)
+_AT_PROBES = np.vander(_PROBES, DEGREE + 1, increasing=True).T  # (10, 23), of powers of t
+_POWERS = [np.polynomial.chebyshev.cheb2poly(row) for row in np.eye(DEGREE + 1)]
+# (10, 10), from values at the nodes to powers of t
+_THROUGH = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, DEGREE)).T @ [
+    np.pad(row, (0, DEGREE + 1 - len(row))) for row in _POWERS
+]
 _MISS = 1e-11  # of the largest f: what a piece may miss
 _OCTAVES = 40  # that pieces get shorter towards slip zero, at least where f bends there
 _LEAST = 1e-7  # of its place: the shortest piece
@@ -42,14 +48,8 @@ def law_moments(
     while waiting:
         low, high = waiting.pop()
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        parts = _parts(law, low, done, middle + half * _NODES)
-        powers = _polynomials(parts)
-        missed = [
-            np.polynomial.polynomial.polyval(_PROBES, row) - exact
-            for row, exact in zip(
-                powers, _parts(law, low, done, middle + half * _PROBES), strict=True
-            )
-        ]
+        powers = _parts(law, low, done, middle + half * _NODES) @ _THROUGH
+        missed = powers @ _AT_PROBES - _parts(law, low, done, middle + half * _PROBES)
         shortest = speeds[-1] * 2.0**-_OCTAVES if low == 0.0 else _LEAST * low
         if np.abs(missed).max() > _MISS * largest and high - low > shortest:
             waiting += [(middle, high), (low, middle)]
@@ -79,13 +79,6 @@ def _parts(
         for k, row in enumerate(moments, 1)
     ]
     return np.stack([law(u), *ratios])
-
-
-def _polynomials(parts: FloatArray) -> FloatArray:
-    """Powers of t (4, 10) through values at Chebyshev's nodes."""
-    series = np.polynomial.chebyshev.chebfit(_NODES, parts.T, DEGREE).T
-    powers = [np.polynomial.chebyshev.cheb2poly(row) for row in series]
-    return np.stack([np.pad(row, (0, DEGREE + 1 - len(row))) for row in powers])
 
 
 def packed_law(ends: FloatArray, rows: FloatArray, corners: FloatArray) -> FloatArray:

@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables.plot.style import BLUE, GREEN, ORANGE, RED, canvas, draw_over, edges_of, in_order
+from puck_tables.plot.style import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    RED,
+    across_of,
+    canvas,
+    draw_over,
+    edges_of,
+    in_order,
+)
 from puck_tables.plot.titles import legend_below, noted, titled
 from puck_tables.scene.run import CARRIED_ROUND, ENDS
 from puck_tables.world.map import Map
@@ -32,6 +42,7 @@ _LOOKS = (
     ("#7a4b2a", "x"), ("#3f51b5", "x"), ("#a8840f", "x"), ("#939393", "x"),
 )  # fmt: skip
 _HATCH = "///"
+_MARKS = 40  # of one kind on a curve: more of them hide it
 _LEGEND_ROW = 5  # entries
 
 
@@ -104,14 +115,16 @@ def _label(stops: Map, name: str) -> str:
 def _mark_ends(
     panel: Axes, axes: Mapping[str, Any], values: Any, end: npt.NDArray[np.int8]
 ) -> None:
-    """Marks on curves that say how each run ends."""
-    across = max(reversed(list(axes)), key=lambda name: axes[name].size)
-    places = np.meshgrid(*axes.values(), indexing="ij")[list(axes).index(across)]
+    """Marks on curves that say how each run ends; of many runs that end alike not on each."""
+    along = list(axes).index(across_of(axes))
+    places = np.meshgrid(*axes.values(), indexing="ij")[along]
+    each = -(-end.shape[along] // _MARKS)
     for line in panel.lines:
         line.set_marker("")
     for code in np.unique(end).tolist():
         color, marker = _LOOKS[code]
         mine = end == code
+        mine &= np.cumsum(mine, axis=along) % each == 1 % each
         panel.plot(
             places[mine], values[mine], color=color, marker=marker, markersize=4, linestyle="",
             zorder=3,
@@ -133,6 +146,8 @@ def _draw_ends(
     from matplotlib.colors import ListedColormap
 
     names = list(axes)
+    if names[-1] != across_of(axes):  # as in the panel above
+        names, end = names[::-1], end.T
     rows, codes = (axes[names[0]], end) if len(names) == 2 else (np.zeros(1), end[None])
     panel.pcolormesh(
         edges_of(axes[names[-1]]), edges_of(rows), codes, rasterized=True,

@@ -171,6 +171,21 @@ def save_figure(figure: Figure, path: str | Path, overwrite: bool = False) -> No
     write_bytes(path, buffer.getvalue(), may_replace(path, overwrite))
 
 
+def is_map(axes: Mapping[str, Any]) -> bool:
+    """Whether values over these axes are drawn as a map, not as curves."""
+    return len(axes) == 2 and min(values.size for values in axes.values()) > FEW
+
+
+def across_of(axes: Mapping[str, Any]) -> str:
+    """The axis that lies across: the last one of a map, of curves the longest.
+
+    >>> across_of({"friction": np.ones(9), "spin": np.ones(3)})
+    'friction'
+    """
+    names = list(axes)[::-1]
+    return names[0] if is_map(axes) else max(names, key=lambda name: axes[name].size)
+
+
 def draw_over(
     figure: Figure, panel: Axes, axes: Mapping[str, Any], labels: Mapping[str, str], values: Any,
     text: str,
@@ -185,10 +200,10 @@ def draw_over(
     if missing:
         text += f"\nnone at {missing} of {values.size}"
     names = list(axes)
-    if len(names) == 2 and min(axes[name].size for name in names) > FEW:
+    if is_map(axes):
         _draw_map(figure, panel, axes, labels, values, text)
         return
-    across = max(reversed(names), key=lambda name: axes[name].size)
+    across = across_of(axes)
     rows = values if len(names) == 2 and across == names[1] else np.transpose(values)
     family = [name for name in names if name != across]
     alone = missing > 0 or axes[across].size < 30  # a value between two that are not has no line
