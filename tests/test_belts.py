@@ -262,3 +262,17 @@ def test_what_is_not_known_is_refused(name: str) -> None:
     parts, words = REFUSED[name]
     with pytest.raises(pt.InputError, match=words):
         pt.Scene(pt.Puck(0.05, friction=0.2), time=1.0, **parts)
+
+
+def test_a_belt_rubs_what_rests_on_another_by_its_friction_at_that_slip():
+    """By hand: f is 0.24 at 0.3 m/s; it slips where 0.24 s = 0.3 (1 − s).  It did at s = ½."""
+    law = [[0.0, 0.3], [1.0, 0.1]]
+    belts = pt.Floor(strips=pt.Strips((0.0,), (law, law), across=(0.5, 0.2)))
+    box = pt.Puck(base="box:0.1x0.06")
+    launch = pt.Launch((0.5, 0.0), position=(-0.2, 0.0))
+    run = pt.Scene(box, belts, launch, time=1.0).simulate(times=[0.41])
+    share = 0.3 / 0.54
+    slips = next(event.time for event in run.events if event.what == "slip")
+    assert abs(slips - (0.15 + 0.1 * share) / 0.5) <= 1e-9
+    heat = 0.24 * 9.80665 * 0.3 * 0.5 * (0.41 - 0.3) ** 2 * 0.5 / 0.1  # s grows by 0.5/0.1 a second
+    assert abs(run.heat_dry[0] - heat) <= 1e-7

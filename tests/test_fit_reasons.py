@@ -99,6 +99,20 @@ def test_angles_that_turn_the_other_way_are_named_first(seed):
     assert any(text.startswith("delta") and "other way" in text for text in found.remarks)
 
 
+@pytest.mark.parametrize(("part", "words"), [(2, "half a turn"), (4, "a quarter of a turn")])
+def test_angles_of_a_bar_or_a_square_are_told(part, words):
+    """As image libraries give them: some floor was blamed."""
+    rng, times, period = np.random.default_rng(part), np.arange(96) / 160.0, 2.0 * math.pi / part
+    true = film_judge.path((1.4, 0.3), 35.0, 2.0, 0.2, 0.04, times)
+    place, angle = film_judge.noisy(rng, true, NOISE)
+    angle = np.mod(angle, period)
+    found = pt.fit(pt.Track(times, place, angle), pt.Puck(radius=0.04))
+    assert words in found.misfit.split("; or ")[0]
+    found = pt.fit(pt.Track(times, place, np.unwrap(angle, period=period)), pt.Puck(radius=0.04))
+    assert not found.complaints
+    assert abs(found["delta"].value - 0.2) < 4.0 * found["delta"].error
+
+
 def test_a_height_that_no_puck_has_is_said():
     """A path on a floor that slopes sideways bends as that of a tall puck does."""
     rng = np.random.default_rng(3512)

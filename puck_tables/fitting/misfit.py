@@ -29,19 +29,23 @@ from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR, _LEAST = 0.01, 1e-3  # of the radius: it is not another one; units are not mixed up by more
-_BY_CHANCE = 0.5  # rad, as angles are off that nothing explains
+_BY_CHANCE, _MOST = 0.5, 0.75  # rad, as angles are off that nothing explains; of all
 _AS_NOISE = 3.0  # times the noise of a place: a reading that fits
 _ROUNDING = 1e-12  # m or rad: of a film that was computed less tells nothing
 _FIRST = 2  # readings are told that are no floors, if they are among so many
 _DEGREE = math.pi / 180.0  # rad
-_ANGLES = (  # times a factor, and more by so much
-    (-1.0, 0.0, "if angles, or y, grew the other way: negate one of them in the file"),
-    (_DEGREE, 0.0, "if angles were in degrees, not in rad: say their unit"),
-    (1.0 / _DEGREE, 0.0, "if angles were in rad, not in degrees: say their unit"),
-)
-_ACROSS = (
-    1.0, 0.5 * math.pi,
+_AGAIN = "if angles came again after {} a turn, as those of {} do: numpy.unwrap(angle, period=pi{})"
+_ANGLES: tuple[tuple[str, float, Callable[[FloatArray], FloatArray]], ...] = (  # their scale
+    ("if angles, or y, grew the other way: negate one of them in the file", 1.0, np.negative),
+    ("if angles were in degrees, not in rad: say their unit", _DEGREE, np.radians),
+    ("if angles were in rad, not in degrees: say their unit", 1.0 / _DEGREE, np.degrees),
+    (_AGAIN.format("half", "a bar", ""), 1.0, lambda angle: _unwrapped(angle, math.pi)),
+    (_AGAIN.format("a quarter of", "a square", "/2"), 1.0,
+     lambda angle: _unwrapped(angle, 0.5 * math.pi)),
+)  # fmt: skip
+_ACROSS: tuple[str, float, Callable[[FloatArray], FloatArray]] = (
     "if angles were those of the y axis of the base: add a quarter turn, or swap its sides",
+    1.0, lambda angle: angle + 0.5 * math.pi,
 )  # fmt: skip
 _MOST_DRAG = 20.0  # over the time of a film
 _BETTER = math.log(1.2)  # more numbers always fit a little better
@@ -62,8 +66,8 @@ class _Left(NamedTuple):
 
     @property
     def explained(self) -> bool:
-        """Whether angles are explained."""
-        return not self.angles.size or float(np.median(self.angles)) < _BY_CHANCE
+        """Whether most angles are explained; half of those off by half turns always are."""
+        return not self.angles.size or float(np.quantile(self.angles, _MOST)) < _BY_CHANCE
 
     def near(self, noise: float) -> bool:
         """Whether places are about as far off as their noise, and angles are explained."""
@@ -170,13 +174,9 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     given, others = spec.known()["radius"], []
     held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
     angles = _ANGLES if spec.base is None else (*_ANGLES, _ACROSS)
-    for factor, more, words in angles if problem.angled and not held else ():
-        films = tuple(
-            film if film.angle is None else replace(film, angle=factor * film.angle + more)
-            for film in problem.films
-        )
-        noise = problem.noise[0], abs(factor) * problem.noise[1]
-        others.append((words, replace(problem.with_films(films), noise=noise), abs(factor)))
+    for words, scale, read in angles if problem.angled and not held else ():
+        if (other := _with_angles(problem, scale, read)) is not None:
+            others.append((words, other, scale))
     wider = problem.angled and "radius" not in (*spec.free, *spec.fixed)  # told by angles alone
     wider = wider and spec.base is None
     if wider:
@@ -196,6 +196,34 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
         if gain > best.gain and not same and left.near(problem.noise[0]):
             best = _Reading(words.format(radius), gain, same=other.spec == spec)
     return [best] if best.words else []
+
+
+def _with_angles(
+    problem: Problem, scale: float, read: Callable[[FloatArray], FloatArray]
+) -> Problem | None:
+    """What was asked, with angles read otherwise, their noise ``scale`` times as much.
+
+    None if they differ by whole turns alone.
+    """
+    films, differ = [], False
+    for film in problem.films:
+        if film.angle is not None:
+            angle = read(film.angle)
+            turned = np.abs(np.sin(0.5 * (angle - film.angle)))
+            differ, film = (
+                differ or float(np.nanmax(turned)) > _ROUNDING,
+                replace(film, angle=angle),
+            )
+        films.append(film)
+    noise = problem.noise[0], scale * problem.noise[1]
+    return replace(problem.with_films(tuple(films)), noise=noise) if differ else None
+
+
+def _unwrapped(angle: FloatArray, period: float) -> FloatArray:
+    """Angles, rad, as they go on where steps of more than half a period are taken for wraps."""
+    seen, found = np.isfinite(angle), angle.copy()
+    found[seen] = np.unwrap(angle[seen], period=period)
+    return found
 
 
 def _by_mark(result: Estimate, problem: Problem) -> _Reading:

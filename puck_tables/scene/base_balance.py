@@ -218,7 +218,7 @@ def friction_on_floor(
 @inner
 def rub_at_rest(floor_map: FloatArray, mx: float, my: float) -> tuple[float, float, float, float]:
     """Force, torque and heat of other belts on who rests, whose load stands at (mx, my), m."""
-    return _friction(floor_map, 0.0, 0.0, 0.0, 0.0, 0.0, mx, my)
+    return _friction(floor_map, 0.0, 0.0, 0.0, 1.0, 0.0, mx, my)  # they slip
 
 
 @inlined
