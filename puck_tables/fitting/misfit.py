@@ -241,8 +241,8 @@ def _gain(result: Estimate, other: _Left, noise: float, scale: float = 1.0) -> f
     """By how much smaller residuals are of another reading; 0 where that tells nothing.
 
     ``scale``: of its angles.  It leaves far less, or no more than noise where one friction leaves
-    more than that; where angles are made small that tells nothing.  Where air or a floor changes in a way that no few numbers tell it may still
-    leave more than noise.
+    more than that; angles that are made small tell nothing so.  Where air or a floor changes in a
+    way that no few numbers tell it may still leave more than noise.
     """
     gain = _left(result.problem, result.x).size() - other.size(scale)
     clean = scale == 1.0 and gain > _LITTLE and float(np.median(other.places)) / noise < _CLEAN
