@@ -152,3 +152,15 @@ def test_what_is_pushed_on_a_rough_floor_tips_where_no_pressure_balances(aside):
     assert [one.puck for one in run.events if one.what == "tip"] == ["tall"]
     assert abs(run["tall"]["x"][-1] - (0.5 - 0.5 * length + least)) <= (1e-7, 1e-5)[aside > 0.0]
     assert run.energy_residual < 1e-8
+
+
+@pytest.mark.parametrize("friction", [0.297, 0.31])
+def test_what_is_carried_to_the_end_of_its_slip_rests_there(friction):
+    """A third of its rim carries it to the end, where a step beyond the stop told of a tip."""
+    tall = pt.Puck(0.04, height=0.3, pressure="annulus:0.8")
+    floor = pt.Floor(law=[[0.0, friction], [3.0, friction]])
+    for launch in (pt.Launch((0.0752, 0.0), spin=2.0), pt.Launch((0.05, 0.0), spin=20.0)):
+        run = pt.Scene(tall, floor, launch).simulate()
+        assert (run.end, [event.what for event in run.events]) == ("at rest", ["stick"])
+        assert run.energy_residual < 1e-9
+    assert pt.Scene(tall, floor, pt.Launch((0.8, 0.1), spin=20.0)).simulate().end == "tipped over"

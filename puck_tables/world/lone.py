@@ -333,7 +333,10 @@ def follow_alone(
             falls = nowhere and newton == 0.0 and is_mixed(friction)
             tips, failed = now + whole if falls else tips, failed or not falls
             h = whole * (0.25 if falls else grows)
-            if h < (tol if falls else _SHORTEST) * unit:
+            if falls and h < tol * unit and 0.0 < q <= straight:  # it stops before, if it is held
+                y[VX] = y[VY] = y[SPIN] = straight = 0.0
+                undecided, tips = True, math.inf
+            elif h < (tol if falls else _SHORTEST) * unit:
                 tips = tips if falls else math.inf
                 break
             continue
