@@ -15,7 +15,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.scene.friction import X, Y, size
+from puck_tables.scene.friction import VX, X, Y, size
 from puck_tables.scene.ingredients import floor_acceleration
 from puck_tables.world.complementarity import load_of, most
 from puck_tables.world.floor_under import floor_of
@@ -202,7 +202,7 @@ def step(
         stop_slips(buffer, modes, new)
         rates_at(group, members, modes, motions, t + h, new, END, scales, buffer)
         for place in range(members.shape[0]):
-            if not math.isfinite(stages[END, place, 3]):  # it tips there
+            if not math.isfinite(stages[END, place, VX]):  # it tips there
                 return math.inf
     return largest
 
