@@ -133,7 +133,7 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         law = _reading(partial(_by_speed, result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = law._replace(gain=min(law.gain, drag.gain))
-        told = sorted(filter(None, (drag, law, air, slope)), key=lambda one: -one.gain)
+        told = [one for one in (drag, law, air, slope) if one]
     told += filter(None, [_reading(partial(_by_mark, result, problem))])
     told += _otherwise(result, problem)
     best = max((one.gain for one in told), default=0.0)
@@ -210,10 +210,8 @@ def _with_angles(
         if film.angle is not None:
             angle = read(film.angle)
             turned = np.abs(np.sin(0.5 * (angle - film.angle)))
-            differ, film = (
-                differ or float(np.nanmax(turned)) > _ROUNDING,
-                replace(film, angle=angle),
-            )
+            differ = differ or float(np.nanmax(turned)) > _ROUNDING
+            film = replace(film, angle=angle)
         films.append(film)
     noise = problem.noise[0], scale * problem.noise[1]
     return replace(problem.with_films(tuple(films)), noise=noise) if differ else None

@@ -143,9 +143,12 @@ def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
 
 @inlined
 def _longest(
-    phase: Phase, t: float, h: float, q: float, speed: float, buffer: LoneBuffer
-) -> float:  # fmt: skip
-    """A step where the slip is about to end, or may turn; at rest, where what holds it changes."""
+    phase: Phase, t: float, h: float, q: float, speed: float, target: float, buffer: LoneBuffer
+) -> tuple[float, bool]:
+    """A step, and whether it ends at the target.
+
+    Shorter where the slip is about to end, or may turn; at rest, where what holds it changes.
+    """
     y, surface, radius = buffer.y, surface_now(phase, t), phase.model.body.radius
     if phase.mode == SLIDES and phase.friction.load > 0.0:
         pull, least = slip_rate(radius, buffer.stages), REST * speed
@@ -158,7 +161,8 @@ def _longest(
         if is_mixed(phase.friction):
             sx, sy, _ = floor_velocity(surface, y[X], y[X + 1])
             h = min(h, _SWING * radius / max(math.hypot(sx, sy), 1e-300))
-    return h
+    landed = t + (1.0 if phase.mode == STOPS else 1.1) * h >= target
+    return target - t if landed else h, landed
 
 
 @inlined
@@ -232,12 +236,14 @@ def _from_rest(
 
 @inlined
 def _last_of(
-    phase: Phase, scale: FloatArray, tol: float, t: float, q: float, slow: float, h: float,
+    phase: Phase, scale: FloatArray, tol: float, t: float, q: float, h: float,
     buffer: LoneBuffer,
 ) -> tuple[Phase, float]:  # fmt: skip
     """The last of a slip q, straight to its stop if it may, and how long a step is then, else h."""
     y, stages, speed, unit = buffer.y, buffer.stages, scale[0], scale[0] / scale[1]
-    pull = slip_rate(phase.model.body.radius, stages)
+    body = phase.model.body
+    slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
+    pull = slip_rate(body.radius, stages)
     way, _ = goes_straight(phase, speed, tol, unit, t, q, pull, slow, y, stages)
     if not way[3] < 0.0:
         return phase, h
@@ -285,8 +291,7 @@ def follow_alone(
 
     And whether the floor carries it all along.  The pieces stand after all that there are, and what
     they did to the energies after all works, uncounted.  Where it rests for good there are none,
-    until inf; ``state`` (6,) is moved to rest.  Where it cannot be, it tips by then; inf: it does
-    not.  ``work`` (38, 12): to work on.
+    until inf; ``state`` (6,) is moved to rest.  Where it cannot be it tips by then, or at inf not.
     """
     choose_belt(engine.regions, engine.discs, i, state)
     model, buffer = model_of(engine, i), buffer_on(work)
@@ -295,7 +300,6 @@ def follow_alone(
     speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
     tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load
     _lay_out(engine, model, t, state, tol, buffer)
-    slow = max(1.0, 2.0 * model.body.inertia / (model.body.mass * radius * radius))
     straight, horizon = _LAST * math.sqrt(tol) * speed, horizon_of(engine, model, t)
     now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
     undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
@@ -320,11 +324,9 @@ def follow_alone(
             rates(phase, now, y, stages, FIRST)
         undecided, known = False, True
         if mode == SLIDES and load > 0.0 and 0.0 < q <= straight:
-            phase, h = _last_of(phase, engine.scale, tol, now, q, slow, h, buffer)
+            phase, h = _last_of(phase, engine.scale, tol, now, q, h, buffer)
             mode, way, newton = phase.mode, phase.way, phase.newton
-        h = _longest(phase, now, h, q, speed, buffer)
-        landed = now + (1.0 if mode == STOPS else 1.1) * h >= target
-        whole = target - now if landed else h
+        whole, landed = _longest(phase, now, h, q, speed, target, buffer)
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
         nowhere = not math.isfinite(stages[STAGES - 1, VX])
@@ -354,10 +356,8 @@ def follow_alone(
         reach = whole * (tol / error) ** 0.125 if newton == 0.0 and error > 0.0 else math.inf
         h = min(whole * _held_back(grows, failed, reach, before), longest if most > 1 else math.inf)
         before, failed, held = reach, False, held and mode == CARRIED
-        count += parts if length > _SHORTEST * unit else 0
-        passed += length
-        # where it slips it does: a step to there may be less than rounding leaves of ``passed``
-        now = target if landed else max(t + passed, now + length)
+        count, passed = count + (parts if length > _SHORTEST * unit else 0), passed + length
+        now = target if landed else max(t + passed, now + length)  # ``passed`` may be rounded off
         h = min(h, 0.5 * (tips - now)) if now < tips else h
         over = _leads_off(engine, i, buffer) or 0.0 < tips - now < tol * unit
         _go_on_from(model, tol, buffer)
