@@ -275,4 +275,4 @@ def test_a_belt_rubs_what_rests_on_another_by_its_friction_at_that_slip():
     slips = next(event.time for event in run.events if event.what == "slip")
     assert abs(slips - (0.15 + 0.1 * share) / 0.5) <= 1e-9
     heat = 0.24 * 9.80665 * 0.3 * 0.5 * (0.41 - 0.3) ** 2 * 0.5 / 0.1  # s grows by 0.5/0.1 a second
-    assert abs(run.heat_dry[0] - heat) <= 1e-7
+    assert abs(run.heat_dry[0] - heat) <= 1e-9  # a step over the border that saw no error: 5e-8

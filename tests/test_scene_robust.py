@@ -192,3 +192,11 @@ def test_times_in_any_legal_way() -> None:
 def test_what_never_stops_says_so() -> None:
     with pytest.raises(InputError, match=r"it may never stop; give a time"):
         simulate_scene(scene(floor={"slope": 0.6}))
+
+
+def test_without_friction_nothing_moves_at_rest():
+    """There is neither a speed nor a force for a scale of errors."""
+    run = simulate_scene(
+        scene(puck={"friction": 0.0}, launch={"velocity": [0, 0], "spin": 0}, time=1.0)
+    )
+    assert run.end == "at rest" and run.end_error < 1e-14

@@ -189,6 +189,29 @@ def test_a_puck_that_is_added_later_was_not_there():
     assert "impact" in [event.what for event in one.advance(1.0)]
 
 
+def test_a_base_may_be_added_among_discs():
+    """Friction of discs alone is looked up: no map of the floor lies under them."""
+    world, box = pt.Scene(pucks=[puck_at(0.0, 0.0, (1.0, 0.0))]).world(), pt.Base.box(0.03, 0.02)
+    world.advance(0.125)
+    late = pt.Puck(0.05, base=box, friction=0.2, launch=pt.Launch((1.0, 0.3), 9.0, (0.5, 0.5)))
+    before = world.copy()
+    assert world.add(late) == 1
+    world.advance(0.25)
+    assert world.state()[0] == pytest.approx(before.at(0.375)[0], abs=1e-9)
+    assert world.state()[1] == pytest.approx(pt.Scene(pucks=[late]).world().at(0.25)[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.1, pt.Orthotropic((0.1, 0.2))])
+def test_a_mallet_alone_is_a_board(friction: Any):
+    floor = pt.Floor(patches=[pt.Patch(friction, radius=0.1)])
+    scene = pt.Scene(pucks=[mallet(-0.4, 0.0)], floor=floor)
+    assert scene.simulate().end == "at rest"
+    world = scene.world()
+    world.drive("mallet", (1.0, 0.0))
+    world.add(puck_at(0.0, 0.0))
+    assert world.advance(0.5)[0].what == "impact"
+
+
 def test_a_frame_more_or_less_changes_nothing():
     scene = table()
     worlds = [scene.world(), scene.world()]

@@ -42,6 +42,7 @@ from puck_tables.scene.ingredients import (
     VelocityConstraint,
     floor_acceleration,
     floor_velocity,
+    is_over_belts,
 )
 from puck_tables.scene.radau import radau_step
 
@@ -238,7 +239,8 @@ def step(
     model = phase.model
     if phase.mode == CARRIED:
         new[VX] = new[VY] = new[SPIN] = 0.0
-        if model.surface.spin == 0.0 and model.surface.changes == 0.0:
+        moves = model.surface.spin != 0.0 or model.surface.changes != 0.0
+        if not (moves or is_over_belts(phase.friction)):
             error = 0.0  # straight on: what looks like an error is rounding
     elif phase.mode == SLIDES and model.hold.kind != FREE:
         _put_right(model.hold, model.surface, t + h, new)

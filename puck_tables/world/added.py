@@ -119,7 +119,7 @@ def with_puck(
 
 def _keep_belts(engine: Engine, new: Engine, count: int) -> None:
     """The velocities of the floor that states of the discs there are relative to stay."""
-    if new.regions.floor_map.size:
+    if engine.regions.floor_map.size:  # else no base there was on one
         before = engine.regions.floor_map.reshape(count, -1)
         after = new.regions.floor_map.reshape(count + 1, -1)
         after[:count, [OVER_X, OVER_Y]] = before[:, [OVER_X, OVER_Y]]

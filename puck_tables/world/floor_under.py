@@ -323,9 +323,10 @@ def lie_at(engine: Engine, i: int, x: float, y: float) -> None:
     disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
-    for number in range(engine.discs.shape[1] - LIES):
-        away = off_border(floor_map, number, x, y)
-        disc[LIES + number] = lies_to(away, disc[RADIUS])
+    if disc[LIGHTNESS] > 0.0:  # else it is driven, and may have no map
+        for number in range(engine.discs.shape[1] - LIES):
+            away = off_border(floor_map, number, x, y)
+            disc[LIES + number] = lies_to(away, disc[RADIUS])
     for k in range(engine.obstacles.shape[0]):
         row = engine.obstacles[k]
         if int(row[KIND]) == OVERHANG:

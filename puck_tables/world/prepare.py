@@ -257,7 +257,8 @@ def fastest(engine: Engine, states: FloatArray) -> float:
 def scales_of(engine: Engine, speeds: FloatArray) -> FloatArray:
     """Scales of speed and acceleration (n, 2) where the largest slips are ``speeds`` (n,).
 
-    What is at rest on a steep slope has the speed that it gets within a radius.
+    What is at rest on a steep slope has the speed that it gets within a radius; where nothing moves
+    and nothing pulls or rubs, that is a radius a second.
 
     Raises InputError if a puck would slide so far that its places, good to a share of that, mean
     nothing here.
@@ -266,7 +267,7 @@ def scales_of(engine: Engine, speeds: FloatArray) -> FloatArray:
     _refuse_far(engine, float(speeds.max(initial=0.0)), radius)
     turning = abs(engine.surface.spin)
     steady = max(steady, turning * float(speeds.max(initial=0.0)), _shaken(engine))
-    speeds = np.where(speeds > 0.0, speeds, np.sqrt(steady * radius))
+    speeds = np.where(speeds > 0.0, speeds, math.sqrt(steady * radius) or radius)
     return np.stack([speeds, np.where(steady > 0.0, steady, speeds**2 / radius)], axis=1)
 
 
