@@ -11,9 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
-from puck_tables.cli.main import main
 
 import puck_tables as pt
 
@@ -215,10 +214,10 @@ def test_the_program_of_the_page(tmp_path: Path) -> None:
     (program,) = re.findall(r"```c\n(.*?)```", page, re.DOTALL)
     (tmp_path / "play.c").write_text(program)
     asked = ["export", "--language", "c", "--scene", "carrom-break", "-o"]
-    done = CliRunner().invoke(main, [*asked, str(tmp_path / "carrom.h")])
+    done = invoke(*asked, tmp_path / "carrom.h")
     assert done.exit_code == 0, done.stderr
     assert f"wrote {tmp_path / 'libcarrom.a'}" in done.stderr
-    again = CliRunner().invoke(main, [*asked, str(tmp_path / "carrom.h")])
+    again = invoke(*asked, tmp_path / "carrom.h")
     assert again.exit_code == 1 and "exists already" in again.stderr
     zig = (sys.executable, "-m", "ziglang", "cc", "-Wall", "-Werror", "play.c", "libcarrom.a")
     run(tmp_path, *zig, "-lm", "-o", "play")

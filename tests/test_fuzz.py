@@ -16,11 +16,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from hostile import doors, hostile
 from hypothesis import given
 from hypothesis import strategies as st
-from puck_tables.cli.main import main
 from pucks import aim, simulate
 
 from puck_tables import resultants, states, stop
@@ -151,7 +150,7 @@ def test_command_lines(line: list[str]):
     with tempfile.TemporaryDirectory() as folder:
         if "-o" in line:
             line[line.index("-o") + 1] = str(Path(folder) / "out.csv")
-        ended = CliRunner().invoke(main, line)
+        ended = invoke(*line)
         assert ended.exit_code in (0, 1, 2), (line, ended.exception)
         assert ended.exception is None or isinstance(ended.exception, SystemExit), line
         assert "Traceback" not in ended.stderr

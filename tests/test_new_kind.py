@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import SpeedLaw, Table
 from puck_tables._core import lazy
@@ -91,13 +90,13 @@ def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
     assert isinstance(loaded, WaveTable)
     assert (loaded.pitch, loaded.law) == (pitch, table.law)
     np.testing.assert_array_equal(loaded.values, table.values)
-    told = CliRunner().invoke(main, ["info", str(path)])
+    told = invoke("info", path)
     assert "holds       waves (wave); uniform pressure" in told.stdout
-    assert CliRunner().invoke(main, ["validate", str(path)]).exit_code == 0
+    assert invoke("validate", path).exit_code == 0
     bent = table.values.copy()
     bent[rng.integers(1, len(bent) - 1, 9)] += 1e-4
     replace(table, values=bent).save(path, overwrite=True)
-    assert CliRunner().invoke(main, ["validate", str(path)]).exit_code == 3
+    assert invoke("validate", path).exit_code == 3
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     builds: list[float] = []
@@ -110,4 +109,4 @@ def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
         kept = fetch("wave", {"pitch": asked}, partial(build, asked))
         assert kept.pitch == asked
     assert builds == [pitch, 2.0 * pitch]
-    assert CliRunner().invoke(main, ["tables"]).stdout.count("waves") == 2
+    assert invoke("tables").stdout.count("waves") == 2

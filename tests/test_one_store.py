@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import nightly, thorough
 
 from puck_tables import Puck
 from puck_tables._core import partial_files
@@ -123,14 +124,8 @@ def fight(draw: random.Random, folder: Path) -> None:
     assert names(folder) == ["m.zarr"] and left(store) == []
 
 
-@pytest.mark.thorough
-def test_processes_on_one_store(tmp_path: Path):
-    fight(random.Random(1), tmp_path)
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("seed", range(2, 10))
-def test_many_processes_on_one_store(seed: int, tmp_path: Path):
+@pytest.mark.parametrize("seed", [thorough(1), *map(nightly, range(2, 10))])
+def test_processes_on_one_store(seed: int, tmp_path: Path):
     fight(random.Random(seed), tmp_path)
 
 

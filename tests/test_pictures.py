@@ -15,7 +15,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 from pucks import simulate, sweep
-from rarely import few
+from rarely import few, nightly, thorough
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables.chetaev.asperity_forces import asperity_curve
@@ -236,8 +236,8 @@ def test_the_examples_of_asperity_show_all_that_happens() -> None:
 
 
 KINDS = [
-    ".png", ".html", *(pytest.param(kind, marks=pytest.mark.thorough) for kind in (".svg", ".pdf")),
-    pytest.param(".gif", marks=pytest.mark.nightly),
+    ".png", ".html", *map(thorough, (".svg", ".pdf")),
+    nightly(".gif"),
 ]  # fmt: skip
 
 

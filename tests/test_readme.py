@@ -8,9 +8,8 @@ import shlex
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
-from puck_tables.cli.main import main
 
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
 PAGES = {path.name: path for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]}
@@ -50,7 +49,7 @@ def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
         program, *arguments = shlex.split(command)
         assert program == "puck"
         Path("run.png").unlink(missing_ok=True)
-        result = CliRunner().invoke(main, arguments)
+        result = invoke(*arguments)
         assert result.exit_code == 0, (command, result.output)
         if not output:
             continue

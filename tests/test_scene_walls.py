@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import thorough
 from scenes import simulate_scene
 
 from puck_tables.scene.library import find_scene
@@ -86,9 +87,7 @@ def test_a_floor_that_leads_off_a_wall_carries_a_puck_off() -> None:
 
 
 @pytest.mark.parametrize("slope", [0.02, 0.05, 0.1])
-@pytest.mark.parametrize(
-    "downhill", [0.3, -0.8, 2.0, pytest.param(4.0, marks=pytest.mark.thorough)]
-)
+@pytest.mark.parametrize("downhill", [0.3, -0.8, 2.0, thorough(4.0)])
 def test_a_tilted_air_hockey_table_ends_at_rest(slope: float, downhill: float) -> None:
     scene: dict[str, Any] = dict(find_scene("air-hockey"))
     scene["puck"]["friction"] = 0.01

@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from commands import invoke
 from puck_tables.cli.tables import kept_files
 from pucks import simulate
 
@@ -50,10 +49,6 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     monkeypatch.setattr(ResultantTable, "built", counted)
     return names
-
-
-def puck(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
 
 
 def test_built_once_then_read(kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]):
@@ -264,14 +259,14 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     other = simulate((1.0, 0.0), 5.0, delta=1.5000001, tol=1e-5)
     assert len(built) > times
     assert other.stop_time != first.stop_time
-    listed = puck("tables").stdout
+    listed = invoke("tables").stdout
     assert listed.count("friction section") == len(list(kept.iterdir()))
     monkeypatch.setattr(table_store, "MOST_ALIKE", 3)
     for delta in (1.1, 1.2, 1.3):
         friction_section.friction_for(pt.law_of("uniform"), delta, 1e-4)
     assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
     simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
-    assert "ring" not in puck("tables").stdout  # made in no time
+    assert "ring" not in invoke("tables").stdout  # made in no time
 
 
 def test_stops_of_other_pucks_are_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
@@ -297,7 +292,7 @@ def test_stops_of_other_pucks_are_kept(kept: Path, monkeypatch: pytest.MonkeyPat
         assert again.selections == before.selections
     with pytest.raises(AssertionError, match="tabulated again"):
         pt.stop(*launches, tol=1e-6, **pucks[0])
-    assert puck("tables").stdout.count("stop section") == len(pucks)
+    assert invoke("tables").stdout.count("stop section") == len(pucks)
     own = pt.Table.build("ring", 1e-8)
     with pytest.raises(AssertionError, match="tabulated again"):  # of a table of one's own: not
         pt.stop(*launches, tol=1e-5, table=own, **pucks[1])
@@ -324,30 +319,30 @@ def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):
     mine[0].write_text("mine")
     mine[1].write_text("mine")
     mine[2].symlink_to(mine[1])
-    listed = json.loads(puck("tables", "--json").stdout)
+    listed = json.loads(invoke("tables", "--json").stdout)
     found = {entry["name"]: entry for entry in listed}
     assert set(found) == {"resultants.h5", "stops.h5", *names}
     assert [found[name]["whole"] for name in names] == [False, True]
     ring = found[names[1]]
     assert (ring["pressure_law"], ring["accuracy"]) == ("ring", 1e-4)
     assert (ring["bytes"], ring["place"]) == ((kept / names[1]).stat().st_size, str(kept))
-    shown = puck("tables")
+    shown = invoke("tables")
     assert shown.output.isascii()
     assert [line.split()[0] for line in shown.stdout.splitlines()[3:5]] == names
     assert "damaged" in shown.stdout
     assert f"kept in {kept}" in shown.stdout
 
-    removed = puck("tables", "--remove", names[0])
+    removed = invoke("tables", "--remove", names[0])
     assert (removed.exit_code, removed.stdout) == (0, f"removed {kept / names[0]}\n")
     for name in (names[0], "resultants.h5", "mine.h5", "notes.txt", "../../x", mine[2].name):
-        refused = puck("tables", "--remove", name)
+        refused = invoke("tables", "--remove", name)
         assert (refused.exit_code, refused.stdout) == (2, "")
         assert f"no table {name} is kept" in refused.stderr
     left = kept / f".puck-{0:016}.part"  # of a builder that was killed while writing
     left.write_text("x")
-    cleaned = puck("tables", "--clean")
+    cleaned = invoke("tables", "--clean")
     assert cleaned.stdout == f"removed {kept / names[1]}\n"
     assert sorted(path.name for path in kept.iterdir()) == sorted(path.name for path in mine)
     assert mine[1].read_text() == "mine"
-    assert "nothing to remove" in puck("tables", "--clean").stdout
-    assert puck("tables", "--clean", "--json").exit_code == 2
+    assert "nothing to remove" in invoke("tables", "--clean").stdout
+    assert invoke("tables", "--clean", "--json").exit_code == 2

@@ -14,10 +14,9 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
 from kinds_of_table import KINDS, LAW, answers, small
-from puck_tables.cli.main import main
 from rarely import few
 
 from puck_tables import Table, law_of
@@ -92,7 +91,7 @@ def test_a_file_says_what_it_holds(kind: str, saved: Callable[[str], Path]):
         assert set(table.functions) <= set(data.variables)
         assert all("units" in data[name].attrs for name in {*data.variables} - {"made_of"})
         assert function in data
-    told = CliRunner().invoke(main, ["info", str(saved(kind))]).stdout
+    told = invoke("info", saved(kind)).stdout
     for words in (grid, f"{table.tolerance:g}", "right", COMMAND, table.pressure_law):
         assert words in told
     assert repr(table) == (
@@ -107,7 +106,7 @@ def test_a_file_says_what_it_holds(kind: str, saved: Callable[[str], Path]):
 def test_an_honest_table_passes_and_a_bold_or_bent_one_fails(
     kind: str, saved: Callable[[str], Path]
 ):
-    judged = CliRunner().invoke(main, ["validate", str(saved(kind))])
+    judged = invoke("validate", saved(kind))
     assert judged.exit_code == 0, judged.output
     assert "FAIL" not in judged.stdout
     table = Table.load(saved(kind))

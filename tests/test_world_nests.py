@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from rarely import nightly
 
 import puck_tables as pt
 
@@ -61,7 +62,7 @@ def nest(seed: int) -> pt.Scene:
 
 @pytest.mark.parametrize(
     "seed",
-    [*(36, 39, 48, 89), *(pytest.param(n, marks=pytest.mark.nightly) for n in range(120))],
+    [*(36, 39, 48, 89), *(nightly(n) for n in range(120))],
 )
 def test_nests_keep_their_books(seed: int):
     """Among them such where two groups with a puck in common set out at one moment."""
