@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -46,9 +45,7 @@ def stops_of(puck: tuple[str, float, float], u: np.ndarray, **options: object) -
     [*(thorough(puck, (1e-4, 1e-8)) for puck in QUICK),
      *(nightly(puck, 10.0 ** -np.arange(3.0, 11.0)) for puck in PUCKS)],
 )  # fmt: skip
-def test_tol_is_honoured_by_truth_friction(
-    puck: tuple[str, float, float], tolerances: Iterable[float]
-):
+def test_tol_is_honoured_by_truth_friction(puck, tolerances):
     u = starts(*puck, np.random.default_rng(8))
     truth = stops_by_truth(*puck, u, 3e-14)  # at 3e-13 it is off by 7e-11 where the base lifts
     for tol in tolerances:

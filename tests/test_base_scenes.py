@@ -473,7 +473,7 @@ def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing"),
+    "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing")
 }
 
 

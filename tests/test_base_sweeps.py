@@ -145,13 +145,8 @@ def test_the_command_line_refuses(command: str, more: str, words: str):
     assert "Traceback" not in said
 
 
-@pytest.mark.parametrize(
-    "body",
-    [{"base": "box:0.2x0.1"}, thorough({"radius": 0.05})],
-)
-def test_under_a_law_fast_launches_end_with_the_others_as_they_do_alone(
-    body: dict[str, Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("body", [{"base": "box:0.2x0.1"}, thorough({"radius": 0.05})])
+def test_under_a_law_fast_launches_end_with_the_others_as_they_do_alone(body, monkeypatch):
     """They need it farther than the first does: no run is made alone for that."""
     puck, floor = Puck(**body), Floor(law=StribeckLaw(0.35, 0.2, 0.1))
     velocity = np.array([[0.3, 0.1], [0.0, 0.02], [5.0, 0.0], [1.0, 1.0]])

@@ -80,10 +80,7 @@ def test_odds_are_those_of_the_library(tmp_path: Path, monkeypatch: pytest.Monke
         ((*CURLING, "--odds", "heading=1deg"), "--within, how near the puck is to end, is for"),
         ((*CURLING, "--within", "1cm"), "--within, how near the puck is to end, is for"),
         ((*CURLING, "--odds", "mass=1", "--within", "1cm"), "give heading, speed, w0"),
-        (
-            (*CURLING, "--odds", "speed=fast", "--within", "1cm"),
-            "--odds speed must be a number",
-        ),
+        ((*CURLING, "--odds", "speed=fast", "--within", "1cm"), "--odds speed must be a number"),
         (("--target", "2,0.1", "--odds", "speed=0.1"), "--odds is for a board"),
         ((*CURLING, "--target", "1,0"), "--target is given 2 times"),
         ((*CURLING, "--pocket", "0"), "both are given"),

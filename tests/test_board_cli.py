@@ -122,9 +122,7 @@ def test_pictures_and_movies_are_written_and_told(tmp_path: Path) -> None:
         (("--plot", "a.png", "--movie", "a.png"), "one of .html, .gif, .mp4"),
     ],
 )
-def test_refusals_are_one_sentence_and_leave_nothing(
-    arguments: tuple[str, ...], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_refusals_are_one_sentence_and_leave_nothing(arguments, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     ended = invoke("simulate", "--scene", "newtons-row", *arguments)
     assert ended.exit_code in (1, 2) and words in ended.stderr
@@ -142,9 +140,7 @@ def test_refusals_are_one_sentence_and_leave_nothing(
         ("sweep", "height", "puck[{}].height"),
     ],
 )
-def test_a_number_of_the_only_puck_is_refused_with_what_to_write(
-    command: str, option: str, path: str
-) -> None:
+def test_a_number_of_the_only_puck_is_refused_with_what_to_write(command, option, path):
     """And what it says is what does it."""
     low, high = sorted(np.random.default_rng(19).uniform(0.001, 0.02, 2).round(4).tolist())
     value = f"{low!r}" if command == "simulate" else f"{low!r}:{high!r}:3"

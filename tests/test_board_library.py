@@ -191,15 +191,7 @@ def test_two_boards_in_one_program_of_cpp(tmp_path: Path) -> None:
         '  std::printf("%d %s\\n", puck_scene_count(&crokinole_scene), puck_board_error());\n'
         "}\n"
     )
-    zig = (
-        sys.executable,
-        "-m",
-        "ziglang",
-        "c++",
-        "play.cpp",
-        "libcrokinole.a",
-        "libbumper_pool.a",
-    )
+    zig = (sys.executable, "-m", "ziglang", "c++", "play.cpp", "libcrokinole.a", "libbumper_pool.a")
     run(tmp_path, *zig, "-lm", "-o", "play")
     (said,) = run(tmp_path, "./play")
     count = len(pt.Scene.load("crokinole").world().names)

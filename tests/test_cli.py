@@ -240,9 +240,7 @@ V0 = ["simulate", "--v0", "1,0"]
         (["build-tables", "--accuracy", "1e-6", "--cells", "65"], ["both fix the grid"]),
     ],
 )
-def test_bad_input_is_one_sentence_and_writes_nothing(
-    folder: Path, arguments: list[str], words: list[str]
-):
+def test_bad_input_is_one_sentence_and_writes_nothing(folder, arguments, words):
     refused(invoke(*arguments), 2, *words)
     assert list(folder.iterdir()) == []
 

@@ -123,9 +123,7 @@ def body(shape: str, height: float) -> pt.Puck:
 @pytest.mark.parametrize("shape", ["box", "round"])
 @pytest.mark.parametrize("name", FLOORS)
 @pytest.mark.parametrize("seed", [11, thorough(12)])
-def test_friction_is_that_of_points_on_rays(
-    seed: int, name: str, shape: str, height: float
-) -> None:
+def test_friction_is_that_of_points_on_rays(seed, name, shape, height):
     rng, (strips, patch) = np.random.default_rng(seed), FLOORS[name]
     judge = Judge(shape, strips, patch, height)
     states = rng.normal(size=(6, 6)) * [0.04, 0.03, 3.0, 1.0, 1.0, 1.0]
@@ -144,9 +142,7 @@ MOTIONS = [("a sole on half of it, felt on the other", "round", 0.03),
 
 
 @pytest.mark.parametrize(("name", "shape", "height"), MOTIONS)
-def test_a_motion_is_that_of_scipy_with_points_on_rays(
-    name: str, shape: str, height: float
-) -> None:
+def test_a_motion_is_that_of_scipy_with_points_on_rays(name, shape, height):
     strips, patch = FLOORS[name]
     judge, thrown = Judge(shape, strips, patch, height), body(shape, height)
     inertia = thrown.inertia_radius**2 * thrown.mass
@@ -370,9 +366,7 @@ def test_it_stands_in_files_reports_pictures_and_sweeps() -> None:
         ({"pressure": "hertz"}, {"orthotropic": WOOD}, "floor.orthotropic: known under uniform"),
     ],
 )  # fmt: skip
-def test_what_is_not_known_is_refused(
-    puck: dict[str, Any], floor: dict[str, Any], said: str
-) -> None:
+def test_what_is_not_known_is_refused(puck, floor, said):
     with pytest.raises(pt.InputError, match=said):
         pt.Scene(pt.Puck(0.05, **puck), pt.Floor(**floor), time=1.0)
     with pytest.raises(pt.InputError, match="one of curling, power, stribeck, orthotropic"):

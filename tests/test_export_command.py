@@ -58,9 +58,7 @@ def test_a_base_has_its_wrench_in_a_file(tmp_path: Path):
         (["-o", "a.c"], ["--language"]),
     ],
 )
-def test_bad_input_is_one_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], words: list[str]
-):
+def test_bad_input_is_one_sentence(tmp_path, monkeypatch, options, words):
     monkeypatch.chdir(tmp_path)
     done = invoke("export", *options)
     assert done.exit_code in (1, 2)

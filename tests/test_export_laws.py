@@ -43,10 +43,7 @@ def test_every_law_equals_the_library(law: str, what: str, tol: float, tmp_path:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize(
-    "law",
-    few(2, [*SPREAD, "galin homogeneous", "annulus:0.8 homogeneous"]),
-)
+@pytest.mark.parametrize("law", few(2, [*SPREAD, "galin homogeneous", "annulus:0.8 homogeneous"]))
 def test_size_of_a_law(law: str):
     name, *homogeneous = law.split()
     puck = puck_under(name, 0.5**0.5 if homogeneous else None)

@@ -137,9 +137,7 @@ def test_the_umask_is_never_touched(folder: Path, monkeypatch: pytest.MonkeyPatc
     write_bytes(folder / "a.txt", b"y", overwrite=True)
 
 
-def test_saving_in_a_deleted_folder_is_a_sentence(
-    folder: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
-):
+def test_saving_in_a_deleted_folder_is_a_sentence(folder, tmp_path_factory, monkeypatch):
     gone = tmp_path_factory.mktemp("gone")
     monkeypatch.chdir(gone)
     gone.rmdir()

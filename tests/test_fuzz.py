@@ -56,9 +56,7 @@ def test_stops(vx: float, vy: float, w0: float, delta: float, decel: float, radi
 
 
 @given(number, number, number, height, positive, positive, st.lists(number, min_size=0, max_size=4))
-def test_states(
-    vx: float, vy: float, w0: float, delta: float, decel: float, radius: float, times: list[float]
-):
+def test_states(vx, vy, w0, delta, decel, radius, times):
     puck = {"delta": delta, "decel": decel, "radius": radius}
     try:
         found = states((vx, vy), w0, times, **puck)
@@ -72,9 +70,7 @@ def test_states(
 
 
 @given(number, number, height, positive, st.one_of(st.none(), number), st.one_of(st.none(), number))
-def test_aims(
-    x: float, y: float, delta: float, decel: float, w0: float | None, max_speed: float | None
-):
+def test_aims(x, y, delta, decel, w0, max_speed):
     try:
         found = aim((x, y), delta=delta, decel=decel, spin=w0, max_speed=max_speed, count=2)
     except PuckError as error:
@@ -92,9 +88,7 @@ def test_aims(
 @given(
     number, number, number, height, positive, positive, st.sampled_from([1e-13, 1e-9, 1e-3, 2.0])
 )
-def test_trajectories(
-    vx: float, vy: float, w0: float, delta: float, decel: float, radius: float, accuracy: float
-):
+def test_trajectories(vx, vy, w0, delta, decel, radius, accuracy):
     puck = {"delta": delta, "decel": decel, "radius": radius, "exact": True}
     try:
         run = simulate((vx, vy), w0, **puck, tol=accuracy, frames=5)
@@ -118,16 +112,7 @@ def test_resultants(phi: float, delta: float):
 
 
 OPTIONS = {
-    "simulate": [
-        "--v0",
-        "--w0",
-        "--delta",
-        "--radius",
-        "--decel",
-        "--times",
-        "--tol",
-        "--mass",
-    ],
+    "simulate": ["--v0", "--w0", "--delta", "--radius", "--decel", "--times", "--tol", "--mass"],
     "sweep": ["--v0", "--w0", "--speed", "--delta", "--radius", "--height", "--tol"],
     "aim": ["--target", "--w0", "--speed", "--time", "--max-speed", "--max-spin", "--delta"],
 }

@@ -90,9 +90,7 @@ def test_nor_with_a_method_of_one_s_choice(starts: dict[str, np.ndarray], method
 
 @pytest.mark.parametrize("tol", TOLERANCES)
 @pytest.mark.parametrize("step", [10, nightly(1)])
-def test_no_trajectory_is_outside_the_tolerance(
-    starts: dict[str, np.ndarray], step: int, tol: float
-):
+def test_no_trajectory_is_outside_the_tolerance(starts, step, tol):
     """Every tenth start, its own at each tolerance; or all of them."""
     numbers = range((int(-np.log10(tol)) - 3) % step, 2000, step)
     one = launched(starts, seed=99)

@@ -117,8 +117,7 @@ FLOORS: dict[str, tuple[pt.Floor, Callable[..., np.ndarray]]] = {
     ),
     "patches": (
         pt.Floor(
-            law=ICE,
-            patches=[pt.Patch(STEEP, corners=HOOK), pt.Patch(0.2, (-0.05, -0.02), 0.04)],
+            law=ICE, patches=[pt.Patch(STEEP, corners=HOOK), pt.Patch(0.2, (-0.05, -0.02), 0.04)]
         ),
         lambda x, y, u: np.where(
             np.hypot(x + 0.05, y + 0.02) < 0.04, 0.2, np.where(in_hook(x, y), STEEP(u), ICE(u))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
@@ -77,9 +76,7 @@ def told(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
-    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(seed, tmp_path, monkeypatch):
     rng = np.random.default_rng(seed)
     pitch, top = rng.uniform(1.0, 5.0), rng.uniform(0.1, 9.0)
     table = Table.build(complex(pitch, top), 1e-5)

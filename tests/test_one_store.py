@@ -180,9 +180,7 @@ REFUSED = ("too large", "in the middle", "no table is so good", "a full disk")
 
 @pytest.mark.usefixtures("small_blocks")
 @pytest.mark.parametrize("why", REFUSED)
-def test_what_is_refused_has_replaced_nothing(
-    why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_what_is_refused_has_replaced_nothing(why, tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     store = tmp_path / "here" / "m.zarr"
     PUCK.sweep([1.0, 2.0], 1.0, store=store)
@@ -218,9 +216,7 @@ def test_what_is_refused_has_replaced_nothing(
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_a_store_that_replaces_another_goes_on_beside_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_store_that_replaces_another_goes_on_beside_it(tmp_path, monkeypatch):
     store = tmp_path / "m.zarr"
     PUCK.sweep(**grid(0), store=store)
     before = content(store)

@@ -116,9 +116,7 @@ WORDS = {
 
 
 @pytest.mark.parametrize("name", few(4, WORDS))
-def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(
-    drawn: Any, name: str
-) -> None:
+def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(drawn, name):
     figure = drawn(simulate_scene(name))
     assert {WORDS[name], "launch"} <= words(figure)
     _legends_stand_outside(figure)

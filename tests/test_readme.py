@@ -39,8 +39,7 @@ def console_examples(text: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(
-    "page",
-    [pytest.param(name, marks=[pytest.mark.thorough] * (name in LONG)) for name in PAGES],
+    "page", [pytest.param(name, marks=[pytest.mark.thorough] * (name in LONG)) for name in PAGES]
 )
 def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """In order, in one folder: numbers to seven digits, those of rounding size to a factor 10."""

@@ -183,9 +183,7 @@ def test_samples_of_a_scene_on_the_command_line(tmp_path: Path, monkeypatch: pyt
     assert len(said) == 1  # one summary, wherever the samples are kept
 
 
-def test_many_samples_of_a_store_are_not_read_unasked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_many_samples_of_a_store_are_not_read_unasked(tmp_path, monkeypatch):
     pytest.importorskip("zarr")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("puck_tables.cli.sweep.SUMMED", 10)

@@ -91,9 +91,7 @@ def truth() -> dict[str, tuple[np.ndarray, np.ndarray]]:
 @pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("name", SMOOTH)
-def test_as_the_judge_has_it(
-    name: str, tol: float, truth: dict[str, tuple[np.ndarray, np.ndarray]]
-) -> None:
+def test_as_the_judge_has_it(name, tol, truth):
     times, states = truth[name]
     scene = {**SMOOTH[name], "time": 2.0, "tol": tol}
     run = simulate_scene(scene, times)

@@ -47,8 +47,7 @@ def test_a_scene_file_that_is_none(text: bytes, said: str, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    "change",
-    ["title='a\udcff'", 'title="a\\nb"', 'title="\\u0000"', f"launch.spin=0x{'f' * 5000}"],
+    "change", ["title='a\udcff'", 'title="a\\nb"', 'title="\\u0000"', f"launch.spin=0x{'f' * 5000}"]
 )
 def test_a_change_that_is_none(change: str) -> None:
     assert puck("simulate", "--scene", "incline", "--set", change).exit_code == 2

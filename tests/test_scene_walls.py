@@ -48,9 +48,7 @@ def hand_summed(restitution: float, tangential: float) -> float:
 @pytest.mark.parametrize(
     "case", [(0.025, -0.93), (0.0017, 0.9), (0.1, 0.5), (0.01, 0.335), (0.3, 0.5)]
 )
-def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(
-    case: tuple[float, float], tol: float
-) -> None:
+def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(case, tol):
     run = leaning_rim(*case, tol)
     error = abs(run.last["x"] - hand_summed(*case)) / (run.speed_scale**2 / run.rate_scale)
     # what is left of the rebounds is a contact, on which the rim slides instead of being rubbed

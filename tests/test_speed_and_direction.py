@@ -244,8 +244,6 @@ def test_it_stands_in_files_reports_and_pictures(tmp_path: Path) -> None:
          r"faster than the friction law floor.orthotropic.law goes \(0.5 m/s\)"),
     ],
 )  # fmt: skip
-def test_what_is_not_known_is_refused(
-    puck: dict[str, Any], floor: dict[str, Any], said: str
-) -> None:
+def test_what_is_not_known_is_refused(puck, floor, said):
     with pytest.raises(pt.InputError, match=said):
         pt.Scene(pt.Puck(0.05, **puck), pt.Floor(**floor), pt.Launch((1.0, 0.0))).simulate()

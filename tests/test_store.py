@@ -72,9 +72,7 @@ def test_inner_radii_that_differ_late_are_two_laws(builds: list[str]):
     assert a.validate(points=200).passed
 
 
-def test_a_profile_is_its_values_not_its_name(
-    builds: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_profile_is_its_values_not_its_name(builds, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("a.csv").write_text("rho,W\n0,2\n0.5,2\n1,1\n")
     Path("b.csv").write_text("0,20\n0.5,20\n1,10\n")  # the same shape
@@ -110,9 +108,7 @@ HARMS = (
 
 
 @pytest.mark.parametrize("harm", HARMS)
-def test_a_damaged_one_is_said_and_built_again(
-    harm: str, kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]
-):
+def test_a_damaged_one_is_said_and_built_again(harm, kept, builds, capsys):
     whole = pt.table_for("ring", accuracy=1e-4)
     (path,) = kept.iterdir()
     content = path.read_bytes()
@@ -156,9 +152,7 @@ def test_a_damaged_one_is_said_and_built_again(
         assert len(builds) == 2
 
 
-def test_a_folder_that_cannot_be_written_is_said_once(
-    builds: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
+def test_a_folder_that_cannot_be_written_is_said_once(builds, monkeypatch, capsys):
     monkeypatch.setenv("XDG_CACHE_HOME", "/proc/none")  # not even root can write there
     for _ in range(2):
         assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
@@ -168,9 +162,7 @@ def test_a_folder_that_cannot_be_written_is_said_once(
     assert said[0].startswith("the table is used but not kept for the next time: ")
 
 
-def test_a_full_disk_is_said_and_leaves_nothing(
-    kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
+def test_a_full_disk_is_said_and_leaves_nothing(kept, monkeypatch, capsys):
     def full(descriptor: int) -> None:
         raise OSError(28, "No space left on device")
 

@@ -141,9 +141,7 @@ def test_a_full_disk(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_folder_that_vanishes_during_the_work(
-    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_folder_that_vanishes_during_the_work(name, folder, monkeypatch):
     target = Path("gone", COMMANDS[name][1].format("new"))
     target.parent.mkdir(parents=True)
     true: Callable[..., object] = safe_write.new_part
