@@ -160,9 +160,9 @@ def _lines(
     # lines, not rays: a modulo π
     first, second = (np.where(np.abs(e) > 0.5 * np.pi, e - np.copysign(np.pi, e), e) for e in ends)
     edge = np.full_like(first, 0.5 * np.pi)
-    cuts = np.stack([-edge, np.minimum(first, second), np.maximum(first, second), edge], axis=-1)
-    half = 0.5 * np.diff(cuts)[..., None]
-    middle = 0.5 * (cuts[:, 1:] + cuts[:, :-1])[..., None]
+    breaks = np.stack([-edge, np.minimum(first, second), np.maximum(first, second), edge], axis=-1)
+    half = 0.5 * np.diff(breaks)[..., None]
+    middle = 0.5 * (breaks[:, 1:] + breaks[:, :-1])[..., None]
     size = len(ratio), -1
     return (middle + half * LINE_RULE[0]).reshape(size), (half * LINE_RULE[1]).reshape(size)
 

@@ -254,9 +254,9 @@ class BoardSource:
             If a file exists or cannot be written.
         """
         instance("path", path, str, Path)
-        beside = companion_path(path, self.language, self.name)
+        companion = companion_path(path, self.language, self.name)
         check_target(path, overwrite)
-        write_bytes(beside, self.companion, overwrite)
+        write_bytes(companion, self.companion, overwrite)
         write_bytes(path, self.text.encode(), overwrite)
 
 

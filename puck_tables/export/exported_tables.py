@@ -46,10 +46,10 @@ def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
 @lru_cache(maxsize=8)
 def _shipped(tol: float) -> dict[str, SplineFit]:
     table = StopTable.shipped()
-    stops, curve, inverse = functions_of(table)
+    stops, parts, inverse = functions_of(table)
     return {
         "STOP": spline_fit(stops, _STOP * tol, haste=2),
-        "CURVE": spline_fit(curve, _CURVE * tol),
+        "CURVE": spline_fit(parts, _CURVE * tol),
         "INVERSE": spline_fit(inverse, _CURVE * tol),
         "CONSTANTS": fit_constants(table.constants, _CONSTANT * tol),
     }
@@ -64,10 +64,10 @@ def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
         "SPIN_TIME": values.spin_time, "LONGEST": values.longest, "SIDES": sides,
     }  # fmt: skip
     tables, constants = _written(_fit_within(values, parts, tol), constants)
-    way = np.where(np.arange(sides) % 2, -1.0, 1.0)
+    sign = np.where(np.arange(sides) % 2, -1.0, 1.0)
     lines = {
         "BORDERS": _short(values.borders), "ORIGINS": _short(values.origins),
-        "SCALES": _short(way / values.extents),
+        "SCALES": _short(sign / values.extents),
     }  # fmt: skip
     if "state" in parts:
         constants |= {"REACH": REACH, "END": values.limit_motions.end}
@@ -113,9 +113,9 @@ def base_tables(kind: Puck) -> Tables:
     sides: list[float] = []
     for outline in shape.outlines:
         for one, two in zip(outline, outline[1:] + outline[:1], strict=True):
-            way = np.subtract(two, one)
-            length = float(np.hypot(*way))
-            sides += [*np.subtract(one, shape.middle).tolist(), *(way / length).tolist(), length]
+            along = np.subtract(two, one)
+            length = float(np.hypot(*along))
+            sides += [*np.subtract(one, shape.middle).tolist(), *(along / length).tolist(), length]
     discs = [
         number for x, y, radius, sign in shape.discs
         for number in (*np.subtract((x, y), shape.middle).tolist(), radius, sign)

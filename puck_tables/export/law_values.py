@@ -139,8 +139,8 @@ class LawValues:
     def phi(self) -> FloatArray:
         """Slip angles of the nodes (sides, nodes)."""
         sides = np.arange(self.extents.size)
-        way = np.where(sides % 2, -1.0, 1.0)
-        off = (way * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
+        sign = np.where(sides % 2, -1.0, 1.0)
+        off = (sign * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
         c = self.origins[:, None] + off
         phi = np.arctan2(1.0 + c, 1.0 - c)
         # next to pure sliding and pure spin from the distance
@@ -232,13 +232,13 @@ def _limit_motions(values: LawValues) -> LimitMotions:
         sign, end = (-1.0, 2) if ahead else (1.0, fast)
         rate, turning, unit = rates[end], turnings[end], units[end]
         begin = np.concatenate([_u(starts[fast]), np.zeros(HEIGHTS)])
-        way = solve_ivp(
+        solution = solve_ivp(
             lambda _, y: (slopes(y) / rate).ravel(), (0.0, sign * _LAST), begin, method="DOP853",
             rtol=_STEP, atol=_STEP, dense_output=True,
         ).sol  # fmt: skip
 
         def result(z: FloatArray) -> FloatArray:
-            u, heading = way(sign * z).reshape(2, HEIGHTS, -1).swapaxes(1, 2)
+            u, heading = solution(sign * z).reshape(2, HEIGHTS, -1).swapaxes(1, 2)
             towards = -1.0 if fast else 1.0
             if ahead:
                 c = np.tanh(0.5 * u) - limits

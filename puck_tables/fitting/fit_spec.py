@@ -168,8 +168,8 @@ class FitSpec:
     def spinning(self, spin: float) -> FitSpec:
         """What is asked with the launch spin (rad/s) held."""
         priors, bounds, start = {**self.priors}, {**self.bounds}, {**self.start}
-        for given in (priors, bounds, start):
-            given.pop("launch_spin", None)
+        for numbers in (priors, bounds, start):
+            numbers.pop("launch_spin", None)
         fixed = {**self.fixed, "launch_spin": spin}
         return replace(self, fixed=fixed, priors=priors, bounds=bounds, start=start)
 

@@ -128,10 +128,11 @@ def minimise(
         if not walker.arrived:
             walker.step()
     if not (math.isfinite(walker.cost) and np.isfinite(walker.slopes).all()):
-        told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(walker.x).items())
+        words = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(walker.x).items())
         raise InputError(
             "the fit is led astray, to a motion that cannot be computed"
-            f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
+            f"{f' ({words})' if words else ''}: give bounds or a prior of what it finds,"
+            " or find less"
         )
     return walker.x, walker.cost
 

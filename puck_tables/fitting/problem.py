@@ -66,12 +66,12 @@ def weights_of(
     sine = np.where(still, 0.0, vy / np.where(still, 1.0, speed))
     along = noise[0] ** 2 + (jitter * speed) ** 2
     turn = noise[1] ** 2 + (jitter * spin) ** 2
-    told = np.where(placed, jitter**2 * speed * spin / along, 0.0)
-    left = np.sqrt(turn - told**2 * along)
+    variance = np.where(placed, jitter**2 * speed * spin / along, 0.0)
+    left = np.sqrt(turn - variance**2 * along)
     out = np.zeros((speed.size, 3, 3))
     out[:, 0, 0], out[:, 0, 1] = cosine / np.sqrt(along), sine / np.sqrt(along)
     out[:, 1, 0], out[:, 1, 1] = -sine / noise[0], cosine / noise[0]
-    out[:, 2, 0], out[:, 2, 1] = -told * cosine / left, -told * sine / left
+    out[:, 2, 0], out[:, 2, 1] = -variance * cosine / left, -variance * sine / left
     out[:, 2, 2] = 1.0 / left
     return out
 

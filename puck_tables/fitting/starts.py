@@ -115,17 +115,17 @@ def _deepest(
     Spins of less than half a turn from frame to frame come first unless they are excluded.
     """
     x, least = minima[0]
-    rivals = [x, *(other for other, cost in minima[1:] if cost < least + _RIVAL), *more]
+    deepest = [x, *(other for other, cost in minima[1:] if cost < least + _RIVAL), *more]
     marked = problem.films[0].angle is not None
     if marked and "launch_spin" not in problem.spec.fixed:
         spin = problem.names.index((0, "launch_spin"))
         half = half_turns(problem.films[0])
         if abs(x[spin]) > half:
-            rivals.append(x.copy())
-            rivals[-1][spin] = math.remainder(x[spin], 2.0 * half)
-    if len(rivals) == 1:
-        return rivals
-    polished = sorted((minimise_robustly(problem, one) for one in rivals), key=lambda one: one[1])
+            deepest.append(x.copy())
+            deepest[-1][spin] = math.remainder(x[spin], 2.0 * half)
+    if len(deepest) == 1:
+        return deepest
+    polished = sorted((minimise_robustly(problem, one) for one in deepest), key=lambda one: one[1])
     result = [one for one, _ in polished]
     return in_order(problem, result) if marked else result
 

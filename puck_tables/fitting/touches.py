@@ -178,8 +178,8 @@ def kinks(film: Observations, noise: float) -> list[int]:
     high = max(_USUAL * float(np.median(jump)), _NOISY * error)
     result = []
     for n, size in enumerate(jump.tolist()):
-        beside = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
-        top = max(0, n - _WINDOW) + np.flatnonzero(beside >= _TOP * beside.max())
+        window = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
+        top = max(0, n - _WINDOW) + np.flatnonzero(window >= _TOP * window.max())
         highest = n == int(top[top.size // 2])
         if highest and size > max(high, _LEAST * float(speed[n])):
             result.append(n + _WINDOW - 1)

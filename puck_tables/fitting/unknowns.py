@@ -106,8 +106,8 @@ class Unknowns:
     def names(self) -> tuple[tuple[int, str], ...]:
         """(track, name) of every unknown; −1 for the puck, −2 for the first wall, and so on."""
         launches = [(n, name) for n, names in enumerate(self.launch_names) for name in names]
-        found = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
-        return (*((-1, name) for name in self.spec.free), *launches, *product(found, WALL))
+        walls = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
+        return (*((-1, name) for name in self.spec.free), *launches, *product(walls, WALL))
 
     @cached_property
     def priors(self) -> tuple[tuple[int, float, float], ...]:
@@ -210,8 +210,8 @@ class Unknowns:
 
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""
-        found = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
-        every = iter(found.tolist())
+        numbers = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
+        every = iter(numbers.tolist())
         return tuple(WallLine(*next(every)) if wall is None else wall for wall in self.walls)
 
     def within(self, x: FloatArray) -> FloatArray:

@@ -221,9 +221,9 @@ class Carrom(ShotGame):
         wanted = np.column_stack([0.21 * actions[:, 0], np.full(len(boards), place)])
         states, there = worlds.state()[boards], worlds.in_play[boards]
         at, free = free_places(wanted, self._line, states[:, :-1, :2], there[:, :-1], self._gaps)
-        way, speed = np.radians(80.0) * actions[:, 1], between(actions[:, 2], 0.2, 6.0)
+        heading, speed = np.radians(80.0) * actions[:, 1], between(actions[:, 2], 0.2, 6.0)
         striker = np.full(free.sum(), len(self._worth))
-        self.send(tables, boards[free], striker, at[free], sent(speed, 0.5 * np.pi - way)[free])
+        self.send(tables, boards[free], striker, at[free], sent(speed, 0.5 * np.pi - heading)[free])
 
     def score(self, tables: Tables) -> FloatArray:
         """What is in the pockets; the striker is there only just after its shot."""
@@ -279,8 +279,11 @@ class Crokinole(ShotGame):
         for k in range(self.limit):
             tables.worlds.remove(k, boards=boards)
         for k, (low, high) in enumerate(((0.03, 0.07), (0.13, 0.18), (0.21, 0.24))):
-            far, way = rng.uniform(low, high, len(boards)), rng.uniform(-np.pi, np.pi, len(boards))
-            tables.worlds.place(self.limit + k, sent(far, way), boards=boards)
+            far, angle = (
+                rng.uniform(low, high, len(boards)),
+                rng.uniform(-np.pi, np.pi, len(boards)),
+            )
+            tables.worlds.place(self.limit + k, sent(far, angle), boards=boards)
 
     def shoot(
         self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
@@ -291,10 +294,10 @@ class Crokinole(ShotGame):
         states, there = worlds.state()[boards], worlds.in_play[boards]
         gaps = np.full(len(self.scene.pucks), 2.0001 * self._radius)
         at, free = free_places(wanted, self._line, states[:, :, :2], there, gaps)
-        way = np.arctan2(-at[:, 1], -at[:, 0]) + np.radians(30.0) * actions[:, 1]
+        heading = np.arctan2(-at[:, 1], -at[:, 0]) + np.radians(30.0) * actions[:, 1]
         speed = between(actions[:, 2], 0.2, 3.0)
         number = tables.moves[boards]
-        self.send(tables, boards[free], number[free], at[free], sent(speed, way)[free])
+        self.send(tables, boards[free], number[free], at[free], sent(speed, heading)[free])
 
     def score(self, tables: Tables) -> FloatArray:
         """Of own discs that were shot, less those of the others."""

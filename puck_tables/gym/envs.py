@@ -121,20 +121,20 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         """
         if not self._old:
             raise InputError("reset the environment before its first step")
-        given = self._checked(actions, self.num_envs)
+        chosen = self._checked(actions, self.num_envs)
         anew, playing = np.flatnonzero(self._over), np.flatnonzero(~self._over)
         earned, ended = np.zeros(self.num_envs), np.zeros(self.num_envs, bool)
         if playing.size:
             tables, rng = self.tables, self.np_random
-            earned[playing], ended[playing] = self.game.move(tables, playing, given[playing], rng)
+            earned[playing], ended[playing] = self.game.move(tables, playing, chosen[playing], rng)
         failed = self.tables.failed.copy()
         earned[failed], ended[failed] = 0.0, False
-        cut = failed | ((self.tables.moves >= self.game.limit) & ~ended)
+        truncated = failed | ((self.tables.moves >= self.game.limit) & ~ended)
         if anew.size:
-            cut[anew] = False
+            truncated[anew] = False
             self._begin(anew)
-        self._over = ended | cut
-        return self._observed(), earned, ended, cut, {}
+        self._over = ended | truncated
+        return self._observed(), earned, ended, truncated, {}
 
     def outcomes(self, actions: npt.ArrayLike, moves: int = 1, board: int = 0) -> FloatArray:
         """What each of several actions would earn now, array (n,): to look ahead.
@@ -162,12 +162,12 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         """
         if not self._old:
             raise InputError("reset the environment before its first step")
-        given = self._checked(actions, None)
-        tables = self.tables.copy(np.full(len(given), board))
-        earned, playing = np.zeros(len(given)), np.arange(len(given))
+        chosen = self._checked(actions, None)
+        tables = self.tables.copy(np.full(len(chosen), board))
+        earned, playing = np.zeros(len(chosen)), np.arange(len(chosen))
         for _ in range(moves):
             rng = np.random.default_rng(int(tables.moves.sum()))
-            won, over = self.game.move(tables, playing, given[playing], rng)
+            won, over = self.game.move(tables, playing, chosen[playing], rng)
             won[tables.failed[playing]] = 0.0
             earned[playing] += won
             playing = playing[~over & ~tables.failed[playing]]
@@ -217,13 +217,13 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         return seen.astype(np.float32)
 
     def _checked(self, actions: npt.ArrayLike, count: int | None) -> FloatArray:
-        given = finite_array("actions", actions, "from -1 to 1")
-        shape = (len(given) if count is None and given.ndim else count, self.game.actions)
-        if given.shape != shape or np.abs(given).max(initial=0.0) > 1.0:
-            most = np.abs(given).max(initial=0.0)
+        checked = finite_array("actions", actions, "from -1 to 1")
+        shape = (len(checked) if count is None and checked.ndim else count, self.game.actions)
+        if checked.shape != shape or np.abs(checked).max(initial=0.0) > 1.0:
+            most = np.abs(checked).max(initial=0.0)
             raise InputError(f"actions must have the shape {shape}, from -1 to 1, got "
-                             f"{given.shape}, up to {most:g}")  # fmt: skip
-        return given
+                             f"{checked.shape}, up to {most:g}")  # fmt: skip
+        return checked
 
 
 class OneTable(gymnasium.Env[Seen, Any]):
@@ -249,16 +249,16 @@ class OneTable(gymnasium.Env[Seen, Any]):
         """Begin anew; what is seen."""
         super().reset(seed=seed)
         self.many.np_random = self.np_random
-        seen, told = self.many.reset()
+        seen, info = self.many.reset()
         self._rendered()
-        return seen[0], told
+        return seen[0], info
 
     def step(self, action: npt.ArrayLike) -> tuple[Seen, float, bool, bool, dict[str, Any]]:
         """Make a move: what is seen, earned, whether the game ended, or was cut off."""
         parts = self.many.step(np.asarray(action)[None])
         self._rendered()
-        seen, earned, ended, cut, told = parts
-        return seen[0], float(earned[0]), bool(ended[0]), bool(cut[0]), told
+        seen, earned, ended, truncated, info = parts
+        return seen[0], float(earned[0]), bool(ended[0]), bool(truncated[0]), info
 
     def outcomes(self, actions: npt.ArrayLike, moves: int = 1) -> FloatArray:
         """What each of several actions would earn now, as :meth:`ManyTables.outcomes`."""

@@ -45,11 +45,11 @@ class PushToPose(TableGame):
         """The disc anywhere some 10 to 20 cm away, the finger behind it."""
         super().begin(tables, boards, rng)
         count = len(boards)
-        way = rng.uniform(-np.pi, np.pi, count)
-        disc = sent(rng.uniform(0.1, 0.2, count), way)
+        heading = rng.uniform(-np.pi, np.pi, count)
+        disc = sent(rng.uniform(0.1, 0.2, count), heading)
         angle = rng.uniform(-0.5, 0.5, count)
         tables.worlds.place("disc", disc, angle, boards=boards)
-        behind = disc + sent(np.full(count, 2.0 * _RADIUS), way)
+        behind = disc + sent(np.full(count, 2.0 * _RADIUS), heading)
         tables.worlds.place("finger", behind, boards=boards)
 
     def move(

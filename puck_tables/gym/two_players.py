@@ -58,13 +58,13 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
     def step(self, actions: dict[str, Any]) -> tuple[dict[str, Any], ...]:
         """A frame: what each sees and earns, whether the game ended, or was cut off."""
         both = np.concatenate([actions[one] for one in PLAYERS])
-        seen, earned, ended, cut, _ = self._many.step(both[None])
-        if ended[0] or cut[0]:
+        seen, earned, ended, truncated, _ = self._many.step(both[None])
+        if ended[0] or truncated[0]:
             self.agents = []
         won = float(earned[0])
         return (
             self._split(seen), dict(zip(PLAYERS, (won, 0.0 - won), strict=True)),
-            dict.fromkeys(PLAYERS, bool(ended[0])), dict.fromkeys(PLAYERS, bool(cut[0])),
+            dict.fromkeys(PLAYERS, bool(ended[0])), dict.fromkeys(PLAYERS, bool(truncated[0])),
             {one: {} for one in PLAYERS},
         )  # fmt: skip
 

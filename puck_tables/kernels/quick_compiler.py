@@ -30,11 +30,11 @@ def _call_type(function: Any, context: Any, args: Any, named: Any) -> Any:
     """Which function of that name is called with such arguments; found once."""
     key = function, context, args, tuple(named.items()), _options.top_or_none()
     if key in _found:
-        found, function._impl_keys[found.args] = _found[key]
+        signature, function._impl_keys[signature.args] = _found[key]
     else:
-        found = _find_type(function, context, args, named)
-        _found[key] = found, function._impl_keys[found.args]
-    return found
+        signature = _find_type(function, context, args, named)
+        _found[key] = signature, function._impl_keys[signature.args]
+    return signature
 
 
 def _list_at_end(after: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:

@@ -289,8 +289,8 @@ def apart(one: MotionRun, other: MotionRun) -> float:
     """How far two motions of a launch are apart: at the stop, and at moments of the first."""
     speed, rim = _speeds((1.0 - one.z) ** 4, one.y[:, U])
     # where the speeds change most, errors of the time count most
-    way = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
-    at = 1 + np.unique(np.searchsorted(way, np.linspace(0.02, 0.98, _MOMENTS) * way[-1]))
+    varied = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
+    at = 1 + np.unique(np.searchsorted(varied, np.linspace(0.02, 0.98, _MOMENTS) * varied[-1]))
     here, speed, rim = one.y[at], speed[at], rim[at]
     q_there, there = other.states(here[:, T])
     speed_there, rim_there = _speeds(q_there, there[:, U])

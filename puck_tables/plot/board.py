@@ -50,13 +50,13 @@ def draw_board(axes: Axes, film: Animation) -> None:
     draw_floor(axes, film.floor, film.box, max(film.frictions, default=0.0))
     draw_painted(axes, film.painted)
     draw_rounds(axes, film.rounds)
-    told: set[str] = set()
+    labels: set[str] = set()
     for line in film.lines:
         looks: dict[str, Any] = {"color": "black", "linewidth": 2.5, "solid_capstyle": "projecting"}
         if line.kind == "edge":
             looks = {"color": RED, "linewidth": 1.2, "linestyle": "--"}
-        looks |= {} if line.kind in told else {"label": line.kind}
-        told.add(line.kind)
+        looks |= {} if line.kind in labels else {"label": line.kind}
+        labels.add(line.kind)
         axes.plot(line.x, line.y, zorder=1, **looks)
 
 

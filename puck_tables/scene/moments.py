@@ -206,8 +206,8 @@ def goes_straight(
     """
     if slip_led(phase.model.hold, surface_now(phase, t), y) > 2.0 * REST * speed:
         return NO_WAY, 0.0  # a constraint leads it on
-    way = stopping(phase.model.body.radius, y, work)
-    brakes, mass = -way[3], phase.model.body.mass
+    direction = stopping(phase.model.body.radius, y, work)
+    brakes, mass = -direction[3], phase.model.body.mass
     if not brakes > 0.0:
         return NO_WAY, 0.0
     still = q <= 2.0 * REST * speed
@@ -224,7 +224,7 @@ def goes_straight(
         quick = 0.5 * q / brakes * abs(change) <= tolerance * unit * mass * brakes
     if excess > SLACK * phase.friction.load or not (quick or still):
         return NO_WAY, 0.0
-    return way, late
+    return direction, late
 
 
 @inner

@@ -105,7 +105,7 @@ def elliptic_demand(
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     ex, ey = law.cosine * east + law.sine * north, law.cosine * north - law.sine * east
-    way = 1.0 if torque >= 0.0 else -1.0
+    sense = 1.0 if torque >= 0.0 else -1.0
     cosine, sine = 1.0, 0.0
     bx, by = ex, ey
     if not guided:  # without spin
@@ -117,7 +117,7 @@ def elliptic_demand(
         for _ in range(60):
             phi = (low * last - high * first) / (last - first)
             phi = phi if low < phi < high else 0.5 * (low + high)
-            cosine, sine = math.cos(phi), way * math.sin(phi)
+            cosine, sine = math.cos(phi), sense * math.sin(phi)
             if not guided and force > 0.0:
                 bx, by = _direction_against(law, ex, ey, cosine, sine)
             rx, ry, turning = mean_friction(law, cosine * bx, cosine * by, sine)
@@ -128,7 +128,7 @@ def elliptic_demand(
                 break
             low, high, first, last, side = _narrowed(low, high, first, last, side, phi, off)
         if force == 0.0:
-            cosine, sine = 0.0, way
+            cosine, sine = 0.0, sense
     rx, ry, turning = mean_friction(law, cosine * bx, cosine * by, sine)
     resist = -(rx * ex + ry * ey) if guided else math.hypot(rx, ry)
     if force == 0.0 and torque != 0.0:

@@ -94,7 +94,7 @@ def fill_launch_lookup(
     Q²/(J r) may be too large, and how many are no launches.
     """
     patience(out.shape[1])
-    flat, flat_curve, flat_turns = stops.reshape(-1), functions.reshape(-1), turns.reshape(-1)
+    flat, flat_functions, flat_turns = stops.reshape(-1), functions.reshape(-1), turns.reshape(-1)
     room, is_rest = np.empty(_ROWS * BLOCK), out.shape[0] == _REST
     cells, log_share = float(stops.shape[1] - 3), math.log(turn_share)
     fill_constants(vx, vy, spin, delta, decel, radius, out.shape[1], room)
@@ -107,7 +107,7 @@ def fill_launch_lookup(
         for n in range(count):
             at = int(row_of(room, FIRST, n)) // _ROW * _CURVE_ROW
             s, weights = row_of(room, _S, n), basis(row_of(room, INSIDE, n))
-            f = spline_values(flat_curve, at, weights, s, CURVE_WIDTH, HEIGHTS)
+            f = spline_values(flat_functions, at, weights, s, CURVE_WIDTH, HEIGHTS)
             into_row(room, _F_BODY, n, f[0])
             into_row(room, _F_TURN, n, f[1])
             into_row(room, _F_CURVE, n, f[2])
@@ -191,18 +191,18 @@ def _find_stops(room: FloatArray, count: int) -> int:
         speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
         decel = row_of(room, DECEL, n)
         f = rows_of(room, _F_TIME, 3, n)
-        found = stopped(
+        stops = stopped(
             vx, vy, rim, row_of(room, SPIN, n), speed, slip, row_of(room, DELTA, n), decel,
             (f[0], f[1], f[2], row_of(room, _F_BODY, n), row_of(room, _F_LENGTH, n)),
         )  # fmt: skip
-        into_row(room, _TIME, n, found[0])
-        into_row(room, _X, n, found[1])
-        into_row(room, _Y, n, found[2])
-        into_row(room, _LENGTH, n, found[3])
-        into_row(room, _BODY, n, found[4])
+        into_row(room, _TIME, n, stops[0])
+        into_row(room, _X, n, stops[1])
+        into_row(room, _Y, n, stops[2])
+        into_row(room, _LENGTH, n, stops[3])
+        into_row(room, _BODY, n, stops[4])
         into_row(room, _Q, n, slip)
         into_row(room, _V, n, speed)
-        into_row(room, _T, n, found[5])
+        into_row(room, _T, n, stops[5])
         size = slip / decel * slip
         usual = (size < LARGEST) & (size < LARGEST * row_of(room, RADIUS, n))
         doubtful += 0 if usual else 1

@@ -175,8 +175,8 @@ def regular_parts(axis: SlipAxis, delta: float) -> FloatArray:
     k = ratio_at(xi)
     # du/dξ = ±(dk/dξ)/k,  k = q⁴/(2 − q⁴)
     q = xi * (2.0 - xi)
-    stretch = 8.0 * q**3 * 2.0 * (1.0 - xi) / (2.0 - q**4) ** 2 / k
-    weight = stretch * _GAUSS_WEIGHTS * 0.5 / n
+    slope = 8.0 * q**3 * 2.0 * (1.0 - xi) / (2.0 - q**4) ** 2 / k
+    weight = slope * _GAUSS_WEIGHTS * 0.5 / n
     sides = []
     for sign in (1.0, -1.0):  # u = ln k below π/4, −ln k above
         slopes = np.stack(regular_slopes(sign * np.log(k), delta), axis=-1)

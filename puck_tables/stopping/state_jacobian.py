@@ -143,17 +143,17 @@ def _find_rates(room: FloatArray) -> None:
         t_slope = sine * (cosine * cosine) * result[_T_SLOPE]
         gap, below = pole_at(is_fast, share, fixed, result)
         # all that is divided by in one division: T − ρ T_u is this over what ρ has below it
-        way = t * below + fixed[KAPPA] * (gap * t_slope)
-        one, other = to_go * t, below * way
+        slope = t * below + fixed[KAPPA] * (gap * t_slope)
+        one, other = to_go * t, below * slope
         inverse = 1.0 / ((one * result[_ALONG]) * other)
         one_along = inverse * (one * other)
         inverse *= result[_ALONG]
-        one_below, one_way = inverse * (one * way), below * (below * (inverse * one))
+        one_below, one_slope = inverse * (one * slope), below * (below * (inverse * one))
         inverse *= other
         pole = -fixed[KAPPA] * one_below
         rate = gap * pole
         rates = (
-            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_way, gap,
+            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_slope, gap,
             pole, turn_rate(rate, cosine, sine, delta, one_along, result),
         )  # fmt: skip
         into_rows(room, _RATES, n, rates)
@@ -208,18 +208,18 @@ def _change(
     ``u0``: of u at the launch; ``elapsed``: of its stop; ``tilt``: of δ.
     """
     speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
-    t, t_slope, t_tilt, rate, one_way, h0, deflection, begun = rates
+    t, t_slope, t_tilt, rate, one_slope, h0, deflection, begun = rates
     flown, raised, turn_slope, turned = coefficients
     _, _, turn0, _, far0, is_far = here
     if tilt == 0.0:
         w, y = elapsed * one_slip, flown * u0
     else:
         w, y = elapsed * one_slip - t_tilt, raised
-    u = (t * y - rate * w) * one_way
-    log_q = (w - t_slope * y) * one_way
+    u = (t * y - rate * w) * one_slope
+    log_q = (w - t_slope * y) * one_slope
     turn = h0 * log_q + turn_slope * u
     if tilt == 0.0:
-        turn = deflection * ((w - t * begun) * one_way) + far0 if is_far > 0.0 else turn - turn0
+        turn = deflection * ((w - t * begun) * one_slope) + far0 if is_far > 0.0 else turn - turn0
     else:
         turn += turned
     v = speed * (log_q - sine * (sine * u))
@@ -248,7 +248,7 @@ def _state_slopes(
     Columns: itself; by v, v across, rω, δ, time.
     """
     speed0, rim0, t0, one_speed, u0, begun, _ = launch_row
-    cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, deflection = moving
+    cosine, sine, slip, one_slip, t_slope, one_slope, gap, pole, deflection = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
     from_stop, rate = of_stop(result, delta), gap * pole
     speed, rim = slip * cosine, slip * sine
@@ -256,13 +256,13 @@ def _state_slopes(
     ex, ey = directions
     fx, fy = -around * ey, around * ex
     gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
-    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, deflection, begun
+    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_slope, h0, deflection, begun
     common = gone, rates, here, coefficients, own
     # by φ and by δ
     x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
     x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
     # by time: velocity and acceleration
-    log_q = -k * (one_slip * one_way)
+    log_q = -k * (one_slip * one_slope)
     u = -rate * log_q
     ahead, aside = speed * (log_q - sine * (sine * u)), speed * (deflection * log_q)
     p5, q5 = ahead * ex + aside * fx, ahead * ey + aside * fy

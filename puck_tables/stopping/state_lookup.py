@@ -170,11 +170,11 @@ def _find_states(room: FloatArray, count: int) -> None:
             slip, turn if spin > 0.0 else -turn, rows_of(room, _F_ALONG, 3, n),
         )  # fmt: skip
         done = (1.0 - left) * (1.0 + left)
-        on_curve = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
+        in_between = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
         at_rest = row_of(room, _TURN, n) if left == 0.0 else 0.0
-        into_row(room, _TO_X, n, there[0] if on_curve else x * done)
-        into_row(room, _TO_Y, n, there[1] if on_curve else y * done)
-        into_row(room, _TO_HEADING, n, there[2] if on_curve else at_rest)
-        into_row(room, _TO_ANGLE, n, there[3] if on_curve else body * done)
-        into_row(room, _TO_SPEED, n, there[4] if on_curve else left * speed)
-        into_row(room, _TO_SPIN, n, there[5] if on_curve else left * spin)
+        into_row(room, _TO_X, n, there[0] if in_between else x * done)
+        into_row(room, _TO_Y, n, there[1] if in_between else y * done)
+        into_row(room, _TO_HEADING, n, there[2] if in_between else at_rest)
+        into_row(room, _TO_ANGLE, n, there[3] if in_between else body * done)
+        into_row(room, _TO_SPEED, n, there[4] if in_between else left * speed)
+        into_row(room, _TO_SPIN, n, there[5] if in_between else left * spin)

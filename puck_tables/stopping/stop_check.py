@@ -186,9 +186,9 @@ def measured(table: StopValues) -> Accuracy:
         )
         deviation[1, row] = _similarity_between(table, TURN_FUNCTION, one) - parts[:, 1]
     nodes, height = np.broadcast_arrays(between.phi(), np.array(_CURVE_HEIGHTS)[:, None])
-    curve = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
+    accuracy = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
     both = {
-        field: getattr(stops, field) + getattr(curve, field)
+        field: getattr(stops, field) + getattr(accuracy, field)
         for field in ("largest", "rms", "p999", "at_phi", "at_second")
     }
     order = 0.0 if coarse is None else math.log2(coarse.max() / stops.largest[0])
@@ -227,8 +227,8 @@ def judged(table: StopValues, progress: Progress | None) -> CheckReport:
         errors = (looked_up(table, u, delta) - exact_stops(u, delta)).T
         checks += _checks(route, NAMES[:STOPS], errors, u, delta, allowed)
     step(1)
-    of_curve = _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL
-    checks += _equations(table, rng, allowed, of_curve) + _at_nodes(table, of_curve)
+    of_functions = _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL
+    checks += _equations(table, rng, allowed, of_functions) + _at_nodes(table, of_functions)
     step(2)
     checks += _elementary(table, allowed)
     step(3)
@@ -258,9 +258,9 @@ def _equations(
     log_q = -half * _integrals(1.0 / rate)
     psi = -half * _integrals(turn / rate)
     q, end_q = np.exp(log_q[:-1]), np.exp(log_q[-1])
-    way = q * norm / (rho.parallel * rate)
-    time = half * _integrals(way)[-1]
-    place = half * _integrals(q * way * np.sqrt(cos2) * np.exp(1j * psi[:-1]))[-1]
+    duration = q * norm / (rho.parallel * rate)
+    time = half * _integrals(duration)[-1]
+    place = half * _integrals(q * duration * np.sqrt(cos2) * np.exp(1j * psi[:-1]))[-1]
     first, last = looked_up(table, start, delta), looked_up(table, end, delta)
     turned = np.exp(1j * psi[-1])
     rest_time = first[:, 0] - time - end_q * last[:, 0]
@@ -268,12 +268,12 @@ def _equations(
         first[:, 1] + 1j * first[:, 2] - place
         - end_q**2 * turned * (last[:, 1] + 1j * last[:, 2])
     )  # fmt: skip
-    curve = _along_motion(table, end, delta) - _along_motion(table, start, delta)
+    along = _along_motion(table, end, delta) - _along_motion(table, start, delta)
     stops = np.stack([rest_time, rest_place.real, rest_place.imag])
-    by_way = np.stack([curve[0] - log_q[-1], curve[1] - psi[-1]])
+    rises = np.stack([along[0] - log_q[-1], along[1] - psi[-1]])
     return [
         *_checks("equation", NAMES[:3], stops, start, delta, EQUATION_FACTOR * allowed),
-        *_checks("equation", NAMES[STOPS:], by_way, start, delta, EQUATION_FACTOR * by_similarity),
+        *_checks("equation", NAMES[STOPS:], rises, start, delta, EQUATION_FACTOR * by_similarity),
     ]
 
 

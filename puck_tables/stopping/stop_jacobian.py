@@ -136,10 +136,10 @@ def placed_state(
     duration, elapsed = slip * unit, time * unit
     place = slip * duration
     frame = elapsed, around, east, north, spin, radius
-    way, moving = (place, duration, slip, unit * place), (slip, 1.0, decel, 0.0)
+    lengths, moving = (place, duration, slip, unit * place), (slip, 1.0, decel, 0.0)
     return (
-        *_line(own[:6], *way, *frame),
-        *_line(own[6:12], *way, *frame),
+        *_line(own[:6], *lengths, *frame),
+        *_line(own[6:12], *lengths, *frame),
         *_turn(own[12:18], deflection * place, deflection * duration, deflection * slip, unit,
         *frame, deflection), *_line(own[18:24], *moving, *frame),
         *_line(own[24:30], *moving, *frame),

@@ -89,9 +89,13 @@ class Stops(Differentiated, Result):
 
     def __getstate__(self) -> dict[str, Any]:
         """The results alone: tables stay where they are."""
-        told = {"method": self.method, "selections": self.selections, "explanation": self.explain()}
+        words = {
+            "method": self.method,
+            "selections": self.selections,
+            "explanation": self.explain(),
+        }
         kept = {"_rest": self._others, "_launches": self._own_launches}
-        return {**self.__dict__, **kept, "_solver": None, "_told": told}
+        return {**self.__dict__, **kept, "_solver": None, "_told": words}
 
     @property
     def method(self) -> str:
@@ -165,8 +169,8 @@ class Stops(Differentiated, Result):
         shape = shape or (1,)
         launches = dict(zip(self._launched, self._own_launches.matrix, strict=False))
         stops = (self.stop_time, self.stop_x, self.stop_y, *self._others)
-        found = dict(zip(OUTPUTS, stops, strict=True))
-        columns = {**launches, **{name: found[name] for name in self._outputs}}
+        values = dict(zip(OUTPUTS, stops, strict=True))
+        columns = {**launches, **{name: values[name] for name in self._outputs}}
         columns |= derived(columns)
         variables = {n: variable(n, row.reshape(shape), dims) for n, row in columns.items()}
         status = self.status.reshape(shape)
@@ -322,13 +326,13 @@ def states_on_base(
     unit = np.where(slip > 0.0, slip / rows[4], 1.0)
     base, local = puck.packed_base, local_error(STATES_TOL)
     in_order = (moments / unit[each])[order]
-    _, found, status = followed(base, rows, local, in_order, ends, threads)
+    _, states, status = followed(base, rows, local, in_order, ends, threads)
     if status.any():
         raise InputError(TOO_LARGE)
     out = np.empty((STATE_ROWS, moments.size))
-    out[:, order] = found.T
-    told = f"{launches.size} pucks integrated, to 1e-9 of Q and Q^2/(f g).\n{WHY_INTEGRATED}"
-    return states_in(out, moments, launches, which, shape, told)
+    out[:, order] = states.T
+    explanation = f"{launches.size} pucks integrated, to 1e-9 of Q and Q^2/(f g).\n{WHY_INTEGRATED}"
+    return states_in(out, moments, launches, which, shape, explanation)
 
 
 def _launches(puck: PuckSpec, velocity: npt.ArrayLike, spin: npt.ArrayLike) -> Launches:

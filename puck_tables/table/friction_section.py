@@ -77,8 +77,8 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
     sides = sides_of(lines_of(law, delta)[::-1])
-    found = slip_spline(lambda phi: slopes_at(law, phi, delta), sides, accuracy, even=True)
-    return FrictionSlopes(found, delta, float(found.error[:RATIOS].max()))
+    spline = slip_spline(lambda phi: slopes_at(law, phi, delta), sides, accuracy, even=True)
+    return FrictionSlopes(spline, delta, float(spline.error[:RATIOS].max()))
 
 
 def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:

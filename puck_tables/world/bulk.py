@@ -230,7 +230,7 @@ def follow_all(
         np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
     )  # fmt: skip
     scales = _scales(engine, first, discs, launches)
-    limits, given = limits_of(engine, scales)
+    limits, prescribed = limits_of(engine, scales)
     room, rows = room_for(count), 256 + 16 * count
     mine = own_engine(engine, rows)
 
@@ -242,7 +242,7 @@ def follow_all(
         )  # fmt: skip
         _follow_all(
             mine, engine.discs, engine.kinds, engine.hangs, engine.segments, first, discs,
-            launches[start:stop], scales[start:stop], until, limits[start:stop], given,
+            launches[start:stop], scales[start:stop], until, limits[start:stop], prescribed,
             np.array(watch), room, np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
@@ -277,15 +277,15 @@ def own_engine(engine: Engine, rows: int, more: int = 0, pushed: int = 0) -> Eng
 
     ``more``: rows for paths beside these; ``pushed``: of groups that push.
     """
-    works = pushed + (rows + LONGEST if engine.floors[:, 2].any() else 0)
-    pieces = np.zeros((more + works, PIECE_COLUMNS))
+    steps = pushed + (rows + LONGEST if engine.floors[:, 2].any() else 0)
+    pieces = np.zeros((more + steps, PIECE_COLUMNS))
     return engine._replace(
         regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()),
         discs=engine.discs.copy(), hangs=engine.hangs.copy(), clock=np.zeros(1),
         kinds=engine.kinds.copy(),
         segments=engine.segments.copy(), group=engine.group.copy(), held=engine.held.copy(),
         next_time=engine.next_time.copy(), next_partner=engine.next_partner.copy(),
-        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((works, WORK_COLUMNS)),
+        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((steps, WORK_COLUMNS)),
         events=np.zeros((rows, engine.events.shape[1])),
         history=np.zeros((rows, engine.history.shape[1])), counts=engine.counts.copy(),
         scale=engine.scale.copy(),

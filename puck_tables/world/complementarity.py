@@ -102,23 +102,23 @@ def _take_out_ties(buffer: GroupBuffer, first: int, count: int) -> None:
 def _write_tableau(buffer: GroupBuffer, size: int) -> None:
     """Write w − M z − z₀ = q in columns w, z, z₀, q, of numbers of order one."""
     a, b, table = buffer.matrix, buffer.vectors[RIGHT], buffer.tableau
-    soft, given, slips = 0.0, 0.0, 0.0
+    soft, most, slips = 0.0, 0.0, 0.0
     for i in range(size):
         r = buffer.first[i]
         soft = max(soft, a[r, r])
         if buffer.variables[i, RATE_N] != 0.0:
-            given = max(given, abs(b[r]))
+            most = max(most, abs(b[r]))
     for i in range(size):  # a slip counts as far as friction may change it
         if buffer.variables[i, CAP] >= 0.0:
             slip, cap = abs(b[buffer.first[i] + 1]), buffer.variables[i, CAP]
-            slips = max(slips, min(slip, _LOST * cap * given) if cap < _STEEPEST else slip)
-    given = max(given, slips)
+            slips = max(slips, min(slip, _LOST * cap * most) if cap < _STEEPEST else slip)
+    most = max(most, slips)
     for i in range(size):
         v, r = buffer.variables[i], buffer.first[i]
         right = v[RATE_N] * b[r]
         if v[RATE_T] != 0.0:
             right += v[RATE_T] * b[r + 1]
-        table[i, 2 * size], table[i, 2 * size + 1] = -1.0, -right / given if given > 0.0 else 0.0
+        table[i, 2 * size], table[i, 2 * size + 1] = -1.0, -right / most if most > 0.0 else 0.0
         buffer.basis[i] = i
         for j in range(size):
             w, s = buffer.variables[j], buffer.first[j]

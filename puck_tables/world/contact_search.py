@@ -90,9 +90,9 @@ def moment_there(rounded: float, rate: float, accel: float, t: float) -> float:
     What only bends moves by so little meanwhile; what opens has opened by then, and may meet what
     it goes to from there: another side of a border, or an arc.
     """
-    bends = math.sqrt(2.0 * rounded / accel) if accel > 0.0 else math.inf
+    turns = math.sqrt(2.0 * rounded / accel) if accel > 0.0 else math.inf
     opens = max(2.0 * rounded / rate, 4.0 * ROUNDED * abs(t)) if rate > 0.0 else math.inf
-    short = min(bends, opens)
+    short = min(turns, opens)
     return short if short < math.inf else 0.0
 
 

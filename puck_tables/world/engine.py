@@ -100,10 +100,10 @@ def _look_at_board(engine: Engine, i: int, t: float, room: Room) -> None:
         if driven and (shape == OVERHANG or shape < NO_CUSHION):
             continue  # what is driven is carried, and its way leads past cushions
         if shape >= ON_FLOOR:
-            found = next_border(engine, i, k, t, engine.next_time[i], room.work, room.one)
+            moment = next_border(engine, i, k, t, engine.next_time[i], room.work, room.one)
         else:
-            found = next_crossing(engine, i, k, t, engine.next_time[i], room.work, room.one)
-        _earlier(engine, i, found, -1 - k)
+            moment = next_crossing(engine, i, k, t, engine.next_time[i], room.work, room.one)
+        _earlier(engine, i, moment, -1 - k)
 
 
 @inner
@@ -123,9 +123,9 @@ def _look_at_others(engine: Engine, i: int, t: float, room: Room) -> None:
             far = corridor(other, engine.segments[j], engine.discs[j], room.one, math.inf, t)
             if are_apart(mine, far, reach):
                 continue
-        found = next_contact(engine, i, j, t, engine.next_time[i], room.work, room.one, room.two)
-        _earlier(engine, i, found, j)
-        _earlier(engine, j, found, i)
+        moment = next_contact(engine, i, j, t, engine.next_time[i], room.work, room.one, room.two)
+        _earlier(engine, i, moment, j)
+        _earlier(engine, j, moment, i)
 
 
 @inner
@@ -249,8 +249,8 @@ def advance(engine: Engine, until: float, first: int, room: Room) -> int:
             engine.scale[3] = 0.0
             for i in range(count):
                 room.marks[i], state = CONCERNED, room.states[i]
-                given = kinetic(engine.discs[i], state[VX], state[VY], state[SPIN])
-                engine.scale[3] += given
+                energy = kinetic(engine.discs[i], state[VX], state[VY], state[SPIN])
+                engine.scale[3] += energy
             contacts = find_touching(engine, engine.clock[0], room)
             if contacts < 0:
                 return CROWDED

@@ -130,5 +130,5 @@ def go_back(engine: Engine, parts: list[Any]) -> None:
 
 def led_rows(engine: Engine) -> FloatArray:
     """The pieces (n, 21) of the ways along which discs are driven."""
-    ways = [engine.pieces[first:last] for first, last in engine.drives.tolist() if first < last]
-    return np.concatenate([engine.pieces[:0], *ways])
+    motions = [engine.pieces[first:last] for first, last in engine.drives.tolist() if first < last]
+    return np.concatenate([engine.pieces[:0], *motions])

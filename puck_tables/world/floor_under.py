@@ -286,12 +286,12 @@ def step_onto(engine: Engine, i: int) -> None:
     disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
-    strip, patch, astride = 0, -1, False
+    strip, patch, is_mixed = 0, -1, False
     if floor_map.size > 0:
         borders, patches = int(floor_map[BORDERS]), int(floor_map[PATCHES])
         for number in range(borders + patches):
             how = int(disc[LIES + number])
-            astride = astride or how == ASTRIDE
+            is_mixed = is_mixed or how == ASTRIDE
             if how == INSIDE and number < borders:
                 strip += 1
             elif how == INSIDE:
@@ -300,8 +300,8 @@ def step_onto(engine: Engine, i: int) -> None:
             strip = borders + 1 + patch
         if floor_map[EDGES] > 0.0:
             for number in range(engine.hangs.shape[1]):
-                astride = astride or engine.hangs[i, number] != 0
-        if astride:
+                is_mixed = is_mixed or engine.hangs[i, number] != 0
+        if is_mixed:
             strip = borders + 1 + patches
     region = strip * engine.discs.shape[0] + i
     disc[REGION] = region

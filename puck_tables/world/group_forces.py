@@ -220,8 +220,8 @@ def act(
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
         floor = floor_of(group.surface, disc)
         cx, cy = floor_acceleration(floor, y[place, X], y[place, Y], vx, vy)
-        carried = buffer.carried[place]
-        carried[0], carried[1], carried[2] = cx, cy, floor.turn
+        held = buffer.carried[place]
+        held[0], held[1], held[2] = cx, cy, floor.turn
         if doing == DRIVEN:
             continue
         px, py, pull = _pull_on(group, members, place, buffer)
@@ -241,8 +241,8 @@ def act(
         ux, uy, w = vx - sx, vy - sy, spin - turning
         friction = _friction_under(group, members, place, y, buffer)
         if doing == YIELDS:
-            way, small = buffer.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
-            nx, ny, nw = small * way[0], small * way[1], small * way[2]
+            slip, small = buffer.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
+            nx, ny, nw = small * slip[0], small * slip[1], small * slip[2]
             fx, fy, torque, heat = friction_force(
                 at_slip_zero(friction, buffer.firm[place]), radius, nx, ny, nw
             )  # fmt: skip
@@ -297,8 +297,8 @@ def power_of_contacts(
     for tie in range(buffer.number[0]):
         place, row = buffer.tied[tie], buffer.ties[tie]
         if motions[place] != HELD:
-            way = row[0] * y[place, VX] + row[1] * y[place, VY] + row[2] * y[place, SPIN]
-            power[SUPPORT_WORK] -= buffer.tautness[tie] * way
+            rate = row[0] * y[place, VX] + row[1] * y[place, VY] + row[2] * y[place, SPIN]
+            power[SUPPORT_WORK] -= buffer.tautness[tie] * rate
 
 
 @inlined
@@ -339,10 +339,10 @@ def excess_on(
 @inlined
 def gain_of(group: Group, number: int, place: int, buffer: GroupBuffer) -> float:
     """How fast a disc that yields gains speed along its way."""
-    way, rate, radius = buffer.ways[place], buffer.rates[place], group.discs[number, RADIUS]
+    slip, rate, radius = buffer.ways[place], buffer.rates[place], group.discs[number, RADIUS]
     ax, ay = rate[0] - buffer.carried[place, 0], rate[1] - buffer.carried[place, 1]
     turn = rate[2] - buffer.carried[place, 2]
-    return way[0] * ax + way[1] * ay + radius * radius * way[2] * turn
+    return slip[0] * ax + slip[1] * ay + radius * radius * slip[2] * turn
 
 
 @inlined

@@ -69,8 +69,8 @@ def push_on(engine: Engine, room: Room, place: Workplace) -> int:
     FULL: nothing was done, for there may be too few rows; TANGLED: it is no motion.
     """
     t, rows = engine.clock[0], _find_groups(engine, room) * (LONGEST + 1)
-    lacks_works = engine.counts[N_WORKS] + rows > engine.work_rows.shape[0]
-    if lacks_works or engine.counts[N_PIECES] + rows > engine.pieces.shape[0]:
+    lacks_rows = engine.counts[N_WORKS] + rows > engine.work_rows.shape[0]
+    if lacks_rows or engine.counts[N_PIECES] + rows > engine.pieces.shape[0]:
         return FULL
     _let_go(engine, room)
     _look_at_driven(engine, t, place)
@@ -84,22 +84,22 @@ def push_on(engine: Engine, room: Room, place: Workplace) -> int:
 @inlined
 def _find_groups(engine: Engine, room: Room) -> int:
     """Give all discs that contacts join the number of the first; how many press on something."""
-    joined, count = room.shares, 0
-    for i in range(joined.shape[0]):
-        joined[i] = -1
+    grouped, count = room.shares, 0
+    for i in range(grouped.shape[0]):
+        grouped[i] = -1
     for n in range(engine.counts[N_CONTACTS]):
         for m in range(2):
             i = room.contacts[n, m]
-            if room.rows[n, ACTS] > 0.0 and i >= 0 and joined[i] < 0:
-                joined[i] = i
+            if room.rows[n, ACTS] > 0.0 and i >= 0 and grouped[i] < 0:
+                grouped[i] = i
                 count += 1
     grown = True
     while grown:
         grown = False
         for n in range(engine.counts[N_CONTACTS]):
             i, j = room.contacts[n, 0], room.contacts[n, 1]
-            if room.rows[n, ACTS] > 0.0 and j >= 0 and joined[i] != joined[j]:
-                joined[i] = joined[j] = min(joined[i], joined[j])
+            if room.rows[n, ACTS] > 0.0 and j >= 0 and grouped[i] != grouped[j]:
+                grouped[i] = grouped[j] = min(grouped[i], grouped[j])
                 grown = True
     return count
 

@@ -197,29 +197,29 @@ def limits_of(engine: Engine, scales: FloatArray) -> tuple[FloatArray, float]:
 
     ``scales`` (n, 2): their scales of speed and acceleration.
     """
-    given = prescribed_until(engine)
-    return max(float(engine.clock[0]), given) + longest_of(engine, scales), given
+    prescribed = prescribed_until(engine)
+    return max(float(engine.clock[0]), prescribed) + longest_of(engine, scales), prescribed
 
 
 @kernel
 def prescribed_until(engine: Engine) -> float:
     """When the last launch, force or film is over, s."""
-    given = 0.0
+    last = 0.0
     for row in range(engine.launches.shape[0]):
-        given = max(given, engine.launches[row, LAUNCH_TIME])
+        last = max(last, engine.launches[row, LAUNCH_TIME])
     for row in range(engine.forcing.shape[0]):
-        given = max(given, engine.forcing[row, 0])
+        last = max(last, engine.forcing[row, 0])
     for i in range(engine.drives.shape[0]):
         for row in range(engine.drives[i, 0], engine.drives[i, 1]):
             if engine.pieces[row, DURATION] < FOR_EVER:
-                given = max(given, engine.pieces[row, PIECE_START] + engine.pieces[row, DURATION])
-    return given
+                last = max(last, engine.pieces[row, PIECE_START] + engine.pieces[row, DURATION])
+    return last
 
 
 def longest_of(engine: Engine, scales: FloatArray) -> FloatArray:
     """LONG times what the least friction takes at such scales of speed and acceleration, s."""
-    slowness, pushed, drags = braking_of(engine)
-    times = np.maximum(slowness * (scales[:, 0] + pushed), scales[:, 0] / scales[:, 1])
+    lever, pushed, drags = braking_of(engine)
+    times = np.maximum(lever * (scales[:, 0] + pushed), scales[:, 0] / scales[:, 1])
     return LONG * np.maximum(times, drags)
 
 
@@ -230,9 +230,9 @@ def braking_of(engine: Engine) -> tuple[float, float, float]:
     brakes = _brakes(engine)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
     arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
-    slowness = float((2.0 * arms).max(initial=1.0)) / float(brakes.min(initial=math.inf))
+    lever = float((2.0 * arms).max(initial=1.0)) / float(brakes.min(initial=math.inf))
     drags = free[free[:, DRAG + SLIDING] > 0.0, DRAG + SLIDING]
-    return slowness, float(_pushed(engine).max()), float((1.0 / drags).max(initial=0.0))
+    return lever, float(_pushed(engine).max()), float((1.0 / drags).max(initial=0.0))
 
 
 def _brakes(engine: Engine) -> FloatArray:
@@ -262,12 +262,12 @@ def _fill_brakes(engine: Engine, y: FloatArray, out: FloatArray) -> None:
 
 def _pushed(engine: Engine) -> FloatArray:
     """What speed forces over time give every disc at most, m/s."""
-    found = np.zeros(len(engine.discs))
+    pushes = np.zeros(len(engine.discs))
     for i in np.flatnonzero(engine.spans[:, 0] < engine.spans[:, 1]).tolist():
         rows, disc = engine.forcing[slice(*engine.spans[i])], engine.discs[i]
         strength = np.hypot(rows[:, 1], rows[:, 2]) + np.abs(rows[:, 3]) / disc[RADIUS]
-        found[i] = disc[LIGHTNESS] * np.trapezoid(strength, rows[:, 0])
-    return found
+        pushes[i] = disc[LIGHTNESS] * np.trapezoid(strength, rows[:, 0])
+    return pushes
 
 
 def refuse_too_fast(engine: Engine, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:

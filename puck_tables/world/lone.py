@@ -179,8 +179,8 @@ def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: 
     if _keeps_direction(model):
         return False
     damps, turns = settling_rates(model, load)
-    settles = h * (damps + turns / q if q > 0.0 else damps)
-    return pull < _SLOWLY * (damps * q + turns) and settles > (_MILD if stiff else _STIFF)
+    damping = h * (damps + turns / q if q > 0.0 else damps)
+    return pull < _SLOWLY * (damps * q + turns) and damping > (_MILD if stiff else _STIFF)
 
 
 @inlined
@@ -244,12 +244,12 @@ def _last_of(
     body = phase.model.body
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     pull = slip_rate(body.radius, stages)
-    way, _ = goes_straight(phase, speed, tol, unit, t, q, pull, slow, y, stages)
-    if not way[3] < 0.0:
+    direction, _ = goes_straight(phase, speed, tol, unit, t, q, pull, slow, y, stages)
+    if not direction[3] < 0.0:
         return phase, h
-    straight = Phase(phase.model, phase.friction, phase.piece, STOPS, way, 0.0)
+    straight = Phase(phase.model, phase.friction, phase.piece, STOPS, direction, 0.0)
     rates(straight, t, y, stages, FIRST)
-    return straight, -q / way[3]
+    return straight, -q / direction[3]
 
 
 @inlined
@@ -301,7 +301,7 @@ def follow_alone(
     tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load
     _lay_out(engine, model, t, state, tol, buffer)
     straight, horizon = _LAST * math.sqrt(tol) * speed, horizon_of(engine, model, t)
-    now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
+    now, passed, h, count, mode, direction = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
     undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
     before, failed, held = math.inf, False, True
     while now < horizon and count <= LONGEST - _MOST and not over:
@@ -310,7 +310,7 @@ def follow_alone(
         target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
         q = slip_speed(radius, y)
         if undecided:
-            was, mode, way = mode, SLIDES, NO_WAY
+            was, mode, direction = mode, SLIDES, NO_WAY
             if load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
                     engine, i, model, friction, rows, now, q, count == 0, buffer
@@ -319,13 +319,13 @@ def follow_alone(
                     break
                 h = target - now if mode == CARRIED else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
-        phase = Phase(model, friction, rows, mode, way, newton)
+        phase = Phase(model, friction, rows, mode, direction, newton)
         if undecided or not known:
             rates(phase, now, y, stages, FIRST)
         undecided, known = False, True
         if mode == SLIDES and load > 0.0 and 0.0 < q <= straight:
             phase, h = _last_of(phase, engine.scale, tol, now, q, h, buffer)
-            mode, way, newton = phase.mode, phase.way, phase.newton
+            mode, direction, newton = phase.mode, phase.way, phase.newton
         whole, landed = _longest(phase, now, h, q, speed, target, buffer)
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)

@@ -212,12 +212,12 @@ def solve(buffer: GroupBuffer, count: int) -> float:
     fill_matrix(buffer, count)
     _factor(buffer, count)
     lu, v = buffer.factors, buffer.vectors
-    given, left = 0.0, 0.0
+    largest, left = 0.0, 0.0
     for r in range(count):
         v[SOLUTION, r], v[LEFT, r] = 0.0, v[RIGHT, r]
         if _is_fixed(buffer, r):
             v[LEFT, r] = 0.0
-        given = max(given, abs(v[LEFT, r]))
+        largest = max(largest, abs(v[LEFT, r]))
     for _ in range(_ROUNDS):
         for r in range(count):
             total = v[LEFT, buffer.order[r]]
@@ -241,9 +241,9 @@ def solve(buffer: GroupBuffer, count: int) -> float:
                 total = 0.0
             v[LEFT, r] = total
             left = max(left, abs(total))
-        if left <= 1e-16 * given:
+        if left <= 1e-16 * largest:
             break
-    return left / given if given > 0.0 else 0.0
+    return left / largest if largest > 0.0 else 0.0
 
 
 @inlined

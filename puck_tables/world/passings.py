@@ -96,13 +96,14 @@ class Passings:
         """See what passed until now."""
         size = 16
         while self.lines.size:
-            own, found = self.copy(), np.zeros((size, COLUMNS))
+            own, passings = self.copy(), np.zeros((size, COLUMNS))
             count = find_passings(
-                engine, own.lines, own.seen, own.segments, np.empty(ROOM), np.empty(6), found
+                engine, own.lines, own.seen, own.segments, np.empty(ROOM), np.empty(6), passings
             )
             if count <= size:
-                order = np.lexsort((found[:count, LINE], found[:count, WHO], found[:count, TIME]))
-                own.rows = np.vstack([self.rows, found[:count][order]])
+                passings = passings[:count]
+                order = np.lexsort((passings[:, LINE], passings[:, WHO], passings[:, TIME]))
+                own.rows = np.vstack([self.rows, passings[order]])
                 self.__dict__.update(own.__dict__)
                 return
             size *= 4

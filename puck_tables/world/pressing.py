@@ -72,11 +72,11 @@ def _turn(
 
     At a pace of J over Q where only friction turns with it; where others lead it, faster.
     """
-    way, scale = buffer.ways[place], buffer.turn_rates[place]
+    slip, scale = buffer.ways[place], buffer.turn_rates[place]
     gain = gain_of(group, number, place, buffer)
-    ox = buffer.rates[place, 0] - buffer.carried[place, 0] - gain * way[0]
-    oy = buffer.rates[place, 1] - buffer.carried[place, 1] - gain * way[1]
-    ow = radius * (buffer.rates[place, 2] - buffer.carried[place, 2] - gain * way[2])
+    ox = buffer.rates[place, 0] - buffer.carried[place, 0] - gain * slip[0]
+    oy = buffer.rates[place, 1] - buffer.carried[place, 1] - gain * slip[1]
+    ow = radius * (buffer.rates[place, 2] - buffer.carried[place, 2] - gain * slip[2])
     off = size(ox, oy, ow)
     if off > 0.97 * scale[1]:
         scale[0] = max(_PACE, 0.5 * scale[0]) if off > 1.001 * scale[1] else 1.3 * scale[0]
@@ -86,9 +86,9 @@ def _turn(
     share = scale[0] / (load_on(group, number) * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
-    wx, wy, ww = way[0] + share * ox, way[1] + share * oy, radius * way[2] + share * ow
+    wx, wy, ww = slip[0] + share * ox, slip[1] + share * oy, radius * slip[2] + share * ow
     whole = size(wx, wy, ww)
-    way[0], way[1], way[2] = wx / whole, wy / whole, ww / whole / radius
+    slip[0], slip[1], slip[2] = wx / whole, wy / whole, ww / whole / radius
     return off, gain
 
 
@@ -104,14 +104,14 @@ def turn_directions(
     for place in range(members.shape[0]):
         buffer.turn_rates[place, 0], buffer.turn_rates[place, 1] = _PACE, math.inf
     for _ in range(_TURNS):
-        settled = True
+        steady = True
         for place in range(members.shape[0]):
             if motions[place] == YIELDS:
                 radius = group.discs[members[place], RADIUS]
                 off, gain = _turn(group, members[place], place, radius, buffer)
                 level = max(_SETTLED * abs(gain), _ROUNDING * scales.rate)
-                settled = settled and off <= level
-        if settled:
+                steady = steady and off <= level
+        if steady:
             return
         act(group, members, motions, y, power, buffer)
         if not find:
@@ -146,19 +146,19 @@ def overborne(
             more = True
             if mark:
                 place, sign = buffer.pairs[c, side], 2.0 * side - 1.0
-                motions[place], way = YIELDS, buffer.ways[place]
+                motions[place], slip = YIELDS, buffer.ways[place]
                 buffer.firm[place] = group.surface.static
-                way[0], way[1] = sign * buffer.sights[c, NX], sign * buffer.sights[c, NY]
-                way[2] = 0.0
+                slip[0], slip[1] = sign * buffer.sights[c, NX], sign * buffer.sights[c, NY]
+                slip[2] = 0.0
     for place in range(members.shape[0]):
         if motions[place] == HELD and (mark or not more):
             excess, ux, uy, w = excess_on(group, members, place, contacts, y, buffer)
             if excess > SLACK:
                 more = True
                 if mark:
-                    motions[place], way = YIELDS, buffer.ways[place]
+                    motions[place], slip = YIELDS, buffer.ways[place]
                     buffer.firm[place] = group.surface.static
-                    way[0], way[1], way[2] = ux, uy, w
+                    slip[0], slip[1], slip[2] = ux, uy, w
     return more
 
 
@@ -197,10 +197,10 @@ def _energy(group: Group, members: IntArray, y: FloatArray) -> float:
 @inlined
 def _goes_on(group: Group, number: int, place: int, scales: Scales, buffer: GroupBuffer) -> bool:
     """Whether a small slip, if there is one, grows in the direction that it has."""
-    y, way, radius = buffer.states[0, place], buffer.ways[place], group.discs[number, RADIUS]
+    y, line, radius = buffer.states[0, place], buffer.ways[place], group.discs[number, RADIUS]
     slip = slip_of(group, number, y)
     vx, vy, spin = over_floor(group.surface, group.discs[number], y)
-    along = way[0] * vx + way[1] * vy + radius * radius * way[2] * spin
+    along = line[0] * vx + line[1] * vy + radius * radius * line[2] * spin
     gains = gain_of(group, number, place, buffer) > GAINS * scales.rate
     return slip == 0.0 or (gains and along > _SAME * slip)
 
@@ -233,14 +233,14 @@ def _come_to_rest(
     group: Group, members: IntArray, motions: IntArray, y: FloatArray, scales: Scales
 ) -> bool:
     """Put to rest whom the others have stopped; whether there are any."""
-    found = False
+    any_rests = False
     for place in range(members.shape[0]):
         number = members[place]
         small = slip_of(group, number, y[place]) <= STILL * scales.speed
         if small and motions[place] == MOVES and can_rest(group, number):
-            motions[place], found = HELD, True
+            motions[place], any_rests = HELD, True
             rest_on_floor(group, number, y[place])
-    return found
+    return any_rests
 
 
 @inner
@@ -286,8 +286,8 @@ def press(
             elif q <= small_slip(scales):
                 motions[place] = YIELDS
                 vx, vy, spin = over_floor(group.surface, group.discs[number], y[place])
-                way, buffer.firm[place] = buffer.ways[place], 1.0
-                way[0], way[1], way[2] = vx / q, vy / q, spin / q
+                slip, buffer.firm[place] = buffer.ways[place], 1.0
+                slip[0], slip[1], slip[2] = vx / q, vy / q, spin / q
     count_rows(group, members, t, buffer)
     place_driven(group, members, motions, t, y, buffer)
     stopped, again, rounds = buffer.modes[1, : contacts.shape[0]], True, 0

@@ -216,34 +216,34 @@ def _first_change(
 
     ``still_there``: whether anybody is at rest whom somebody touches.
     """
-    how, which, cut = TIME_UP, -1, False
+    how, which, is_short = TIME_UP, -1, False
     while True:
         c, kind = first_negative(buffer, 1, contacts)
         if c < 0:
             break
-        how, which, cut = PARTS + kind, c, True
+        how, which, is_short = PARTS + kind, c, True
         length = _moment(group, members, modes, motions, t, length, c, kind, scales, buffer)
         if first_negative(buffer, 1, contacts) == (c, kind):
             break
     if still_there:
         goes = sets_off(group, members, modes, motions, scales, buffer)
         if goes < 0:
-            return UNSOLVED, which, length, cut
+            return UNSOLVED, which, length, is_short
         if goes > 0:
-            how, which, cut = SETS_OFF, -1, True
+            how, which, is_short = SETS_OFF, -1, True
             length = _moment(
                 group, members, modes, motions, t, length, _NOBODY, BEGIN, scales, buffer
             )
     if how == TIME_UP and group.discs.shape[1] > LIES:  # there are borders on the floor
         which = _comes_over(group, members, buffer)
         if which >= 0:
-            how, cut = OFF_BORDER, True
+            how, is_short = OFF_BORDER, True
             length = _moment(
                 group, members, modes, motions, t, length, which, _OVER_BORDER, scales, buffer
             )
         elif _changes_belts(group, members, buffer):
             how = OFF_BORDER
-    return how, which, length, cut
+    return how, which, length, is_short
 
 
 @inlined
@@ -361,7 +361,7 @@ def follow(
             h = length * shorter
             continue
         h = length * min(shorter, grows)
-        how, which, length, cut = _first_change(
+        how, which, length, is_short = _first_change(
             group, members, modes, motions, contacts.shape[0], t, length, still_there, scales,
             buffer,
         )  # fmt: skip
@@ -373,7 +373,7 @@ def follow(
         how, which, begun = _slips(group, members, motions, t, length, how, which, scales, buffer)
         count += 1
         passed += length
-        t = target if landed and not cut else start + passed
+        t = target if landed and not is_short else start + passed
         _go_on_from(size, contacts.shape[0], buffer)
         if begun:
             rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)

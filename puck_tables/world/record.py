@@ -158,16 +158,16 @@ def pushed_back(engine: Engine, i: int, since: Reported) -> tuple[FloatArray, Re
         segment = int(row[SEGMENT])
         if segment not in ends:
             ends[segment] = _end_of(engine, segment)
-        cut = ends[segment]
-        if min(float(row[BEGINS] + row[DURATION]), cut) > now:
+        end = ends[segment]
+        if min(float(row[BEGINS] + row[DURATION]), end) > now:
             still_open = min(still_open, n)
         driver = int(row[LED_BY])
-        if driver not in (i, SEVERAL) or min(now, cut) < row[BEGINS]:
+        if driver not in (i, SEVERAL) or min(now, end) < row[BEGINS]:
             continue
-        given = _worked(row, min(now, cut))
+        total = _worked(row, min(now, end))
         if n < since.work_rows:
-            given -= _worked(row, min(since.time, cut))
-        impulse += given if driver == i else math.nan
+            total -= _worked(row, min(since.time, end))
+        impulse += total if driver == i else math.nan
     return impulse, Reported(now, int(counts[N_EVENTS]), int(counts[N_WORKS]), still_open)
 
 
@@ -198,13 +198,13 @@ def _end_of(engine: Engine, segment: int) -> float:
 
 def rests_of(engine: g.Engine) -> list[Rest]:
     """Every stick and slip until now; what an impact or a launch sets off is no slip."""
-    found: list[Rest] = []
+    rests: list[Rest] = []
     for rest in _described(engine):
-        if rest[1] == "slip" and found and found[-1][:3] == (rest[0], "stick", rest[2]):
-            found.pop()  # it stopped, and was not held
+        if rest[1] == "slip" and rests and rests[-1][:3] == (rest[0], "stick", rest[2]):
+            rests.pop()  # it stopped, and was not held
         else:
-            found.append(rest)
-    return found
+            rests.append(rest)
+    return rests
 
 
 def _described(engine: g.Engine) -> list[Rest]:
@@ -226,7 +226,7 @@ def _described(engine: g.Engine) -> list[Rest]:
     # none of what is driven, or what nothing can hold
     held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")
-    found: list[tuple[int, float, str]] = []
+    intervals: list[tuple[int, float, str]] = []
     disc, rested = -1, True
     for n in own[held[discs[own]]].tolist():
         if discs[n] != disc:
@@ -235,17 +235,20 @@ def _described(engine: g.Engine) -> list[Rest]:
             continue
         first, last = resting[n]
         if first and not rested:
-            found.append((n, starts[n], "stick"))
+            intervals.append((n, starts[n], "stick"))
         if first and moves[n] and kinds[n] == PATH and starts[n] > 0.0:
-            found.append((n, starts[n], "slip"))
+            intervals.append((n, starts[n], "slip"))
         rested = last
         if last and moves[n]:
-            found.append((n, min(stops[n], ends[n]), "stick"))
-    at, times = np.array([n for n, *_ in found], np.int64), np.array([one[1] for one in found])
-    places = states_on(engine, at, times)[:, [X, Y]].tolist() if found else []
+            intervals.append((n, min(stops[n], ends[n]), "stick"))
+    at, times = (
+        np.array([n for n, *_ in intervals], np.int64),
+        np.array([one[1] for one in intervals]),
+    )
+    places = states_on(engine, at, times)[:, [X, Y]].tolist() if intervals else []
     return [
         (float(time), what, int(discs[n]), x, y)
-        for (n, time, what), (x, y) in zip(found, places, strict=True)
+        for (n, time, what), (x, y) in zip(intervals, places, strict=True)
     ]
 
 

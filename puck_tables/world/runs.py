@@ -108,13 +108,13 @@ class Runs(Work):
     def numbers(self, start: int, stop: int) -> dict[str, FloatArray]:
         """What differs between runs, by path, of some of them."""
         places = np.unravel_index(np.arange(start, stop), self.shape)
-        found: dict[str, FloatArray] = {}
+        result: dict[str, FloatArray] = {}
         for (path, values), place in zip(self.scene.ranges.items(), places, strict=True):
             if is_batch(path):
-                found |= zip(launch_paths(path), values[place].T, strict=True)
+                result |= zip(launch_paths(path), values[place].T, strict=True)
             else:
-                found[path] = values[place]
-        return found
+                result[path] = values[place]
+        return result
 
     def along(self, run: int) -> dict[str, float]:
         """Where a run is along the axes."""
@@ -137,18 +137,18 @@ class Runs(Work):
         outer = {path: values.tolist() for path, values in numbers.items()
                  if path not in self._inner}  # fmt: skip
         keys = list(zip(*outer.values(), strict=True)) or [()] * count
-        found: Columns = {name: np.empty((count, *one)) for name, one in self._found.items()}
-        found[self.code] = np.empty(count, np.int8)
+        columns: Columns = {name: np.empty((count, *one)) for name, one in self._found.items()}
+        columns[self.code] = np.empty(count, np.int8)
         begin = 0
         while begin < count:  # runs that differ in nothing but launches, together
             last = begin + 1
             while last < count and keys[last] == keys[begin]:
                 last += 1
             part = {path: values[begin:last] for path, values in numbers.items()}
-            self._together(tuple(zip(outer, keys[begin], strict=True)), part, found, begin, last)
+            self._together(tuple(zip(outer, keys[begin], strict=True)), part, columns, begin, last)
             begin = last
         refuse_changed(self._whole, self._read)
-        return found
+        return columns
 
     def _together(
         self, fixed: tuple[tuple[str, float], ...], numbers: Mapping[str, FloatArray],
@@ -227,8 +227,8 @@ class Runs(Work):
         """The map, or the samples."""
         tally = Tally.of(columns[self.code])
         case = self._first(tally)
-        told = tuple(self.without_end(tally))
-        return self._result(columns, case.model, case.explanation, told)
+        remarks = tuple(self.without_end(tally))
+        return self._result(columns, case.model, case.explanation, remarks)
 
     def _result(
         self, columns: Columns, model: str, explanation: str, parts: tuple[str, ...]

@@ -105,9 +105,9 @@ class SceneEnds(Result):
 
     def dataset(self) -> Dataset:
         """The ends and what follows from them; the scene and its files as texts."""
-        found = self.labelled()
-        more = self._over(derived(self.columns), found.columns["end"].dims)
-        return replace(found, columns={**found.columns, **more})
+        result = self.labelled()
+        more = self._over(derived(self.columns), result.columns["end"].dims)
+        return replace(result, columns={**result.columns, **more})
 
     def _over(
         self, columns: Mapping[str, FloatArray], dims: tuple[str, ...]
@@ -265,6 +265,6 @@ class Sample(SceneEnds, Summary):
     def labelled(self) -> Dataset:
         """The columns with names and units, what was drawn among them."""
         drawn = {f"drawn_{plain_name(path)}": str(one) for path, one in self.spreads.items()}
-        found = super().labelled()
-        attributes = {**found.attributes, **drawn, "seed": self.seed}
-        return replace(found, attributes=attributes)
+        dataset = super().labelled()
+        attributes = {**dataset.attributes, **drawn, "seed": self.seed}
+        return replace(dataset, attributes=attributes)

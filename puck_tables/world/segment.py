@@ -68,8 +68,8 @@ class Lookups(NamedTuple):
 @inlined
 def _damped_state(segment: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
     vx, vy, spin = segment[0], segment[1], segment[2]
-    left, way, turns, angle = damped(disc[DRAG:], math.hypot(vx, vy), spin, time)
-    out[X], out[Y] = segment[PLACE_X] + vx * way, segment[PLACE_Y] + vy * way
+    left, length, turns, angle = damped(disc[DRAG:], math.hypot(vx, vy), spin, time)
+    out[X], out[Y] = segment[PLACE_X] + vx * length, segment[PLACE_Y] + vy * length
     out[THETA] = segment[ANGLE] + spin * angle
     out[VX], out[VY] = vx * left, vy * left
     out[SPIN] = spin * turns
@@ -98,17 +98,17 @@ def state_at(
 ) -> None:  # fmt: skip
     """X, y, angle, vx, vy, spin at the time t into ``out`` (6,)."""
     if kind == LOOKED_UP:
-        found = room
-        look_up_state(segment, t - segment[START], lookups.states, found)
+        looked_up = room
+        look_up_state(segment, t - segment[START], lookups.states, looked_up)
         later = 1.0 if t > segment[START] else 0.0
-        out[X] = segment[PLACE_X] + (found[PUCK_X] - later * segment[OFF_X])
-        out[Y] = segment[PLACE_Y] + (found[PUCK_Y] - later * segment[OFF_Y])
-        out[THETA] = segment[ANGLE] + (found[ORIENTATION] - later * segment[OFF_ANGLE])
-        speed = found[SPEED]
-        out[VX], out[VY], out[SPIN] = 0.0, 0.0, found[PUCK_SPIN]
+        out[X] = segment[PLACE_X] + (looked_up[PUCK_X] - later * segment[OFF_X])
+        out[Y] = segment[PLACE_Y] + (looked_up[PUCK_Y] - later * segment[OFF_Y])
+        out[THETA] = segment[ANGLE] + (looked_up[ORIENTATION] - later * segment[OFF_ANGLE])
+        speed = looked_up[SPEED]
+        out[VX], out[VY], out[SPIN] = 0.0, 0.0, looked_up[PUCK_SPIN]
         if speed > 0.0:
             start = math.hypot(segment[0], segment[1])
-            cosine, sine = math.cos(found[HEADING]), math.sin(found[HEADING])
+            cosine, sine = math.cos(looked_up[HEADING]), math.sin(looked_up[HEADING])
             east, north = segment[0] / start, segment[1] / start
             out[VX] = speed * (cosine * east - sine * north)
             out[VY] = speed * (sine * east + cosine * north)
@@ -175,10 +175,10 @@ def start_segment(
         )
         segment[UNTIL] = t + segment[KNOWN + TIME]
         # places that are looked up are off by some 1e-12 of Q²/J: discs that touch must not jump
-        found = room
-        look_up_state(segment, _SOON * segment[KNOWN + TIME], lookups.states, found)
-        segment[OFF_X], segment[OFF_Y] = found[PUCK_X], found[PUCK_Y]
-        segment[OFF_ANGLE] = found[ORIENTATION]
+        looked_up = room
+        look_up_state(segment, _SOON * segment[KNOWN + TIME], lookups.states, looked_up)
+        segment[OFF_X], segment[OFF_Y] = looked_up[PUCK_X], looked_up[PUCK_Y]
+        segment[OFF_ANGLE] = looked_up[ORIENTATION]
         segment[STRONGEST] = disc[DECEL]
         return LOOKED_UP
     segment[STRONGEST] = speed * per_speed(disc[DRAG:], speed)
@@ -208,10 +208,10 @@ def corridor(
     if kind in (DAMPED, PATH):
         x, y = state[X], state[Y]
     if kind == DAMPED:
-        way = min(horizon - now, farthest(disc[DRAG:], 1.0))
-        if way == math.inf:
+        reach = min(horizon - now, farthest(disc[DRAG:], 1.0))
+        if reach == math.inf:
             return x, y, x, y, math.inf
-        return x, y, x + way * state[VX], y + way * state[VY], 0.0
+        return x, y, x + reach * state[VX], y + reach * state[VY], 0.0
     if kind == PATH:
         return x, y, x, y, segment[FASTEST] * (min(horizon, segment[UNTIL]) - now)
     return x, y, x, y, 0.0

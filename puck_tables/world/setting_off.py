@@ -255,8 +255,8 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
         changed, moved = what != PLACED, engine.kinds[i] == GONE and what != REMOVED
         swift = False
         for column in range(6):
-            given = room.before[i, column]
-            if math.isnan(given) or given == room.states[i, column]:
+            before = room.before[i, column]
+            if math.isnan(before) or before == room.states[i, column]:
                 room.before[i, column] = room.states[i, column]
             else:
                 changed, moved, swift = True, moved or column <= Y, swift or column >= VX
@@ -289,6 +289,6 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
         return CROWDED
     for i in range(count):
         with_them = engine.group[i] > 0 and room.marks[i] != NOT_CONCERNED
-        concerned = room.shares[i] != _KEPT or with_them
-        room.marks[i] = CONCERNED if concerned else NOT_CONCERNED
+        is_involved = room.shares[i] != _KEPT or with_them
+        room.marks[i] = CONCERNED if is_involved else NOT_CONCERNED
     return go_on(engine, t, contacts, room)

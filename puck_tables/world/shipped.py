@@ -81,9 +81,9 @@ def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
         np.zeros((1, 2)), one.copy(), one.copy(), none.copy(),
     )  # fmt: skip
     limits = np.array([radius, steady, fastest_allowed(engine), *braking_of(engine)])
-    found = np.zeros((2 * len(bench.engine.events), FOUND_COLUMNS))
+    rows = np.zeros((2 * len(bench.engine.events), FOUND_COLUMNS))
     return Shipped(
-        bench, store, orders, limits, found, none.copy(), np.zeros((1, count, 6)),
+        bench, store, orders, limits, rows, none.copy(), np.zeros((1, count, 6)),
         np.zeros((1, count), np.int64),
     ), board  # fmt: skip
 

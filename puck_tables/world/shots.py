@@ -113,8 +113,8 @@ def _gaps(sample: TriedLaunches, most: int) -> Whole:
     lengths = np.minimum(landings.lengths, landings.lengths[after])
     changes = (landings.prints != landings.prints[after]) & (lengths <= most) & (wide > _CLOSEST)
     changes &= first
-    found = np.flatnonzero(changes)
-    return found[np.lexsort((-wide[found], lengths[found]))]
+    places = np.flatnonzero(changes)
+    return places[np.lexsort((-wide[places], lengths[places]))]
 
 
 def _next(sample: TriedLaunches) -> Whole:
@@ -244,11 +244,11 @@ class Shots:
         turn = cmath.rect(1.0, puck.launch.orientation)
         along = (starts[:, 0] + 1j * starts[:, 1]) / turn
         velocities = np.stack([along.real, along.imag], axis=1)
-        found = stop_on_base(puck, velocities, starts[:, 2], segment_error(self.scene), 1)
-        x, y = found.stop_position.T
+        stops = stop_on_base(puck, velocities, starts[:, 2], segment_error(self.scene), 1)
+        x, y = stops.stop_position.T
         place = complex(*start_of(puck)) + (x + 1j * y) * turn
         none = np.zeros(len(starts), np.int64)
-        prints = np.where(found.status == 0, none, NO_COURSE)
+        prints = np.where(stops.status == 0, none, NO_COURSE)
         return Landings(place.real, place.imag, prints, none, none, none)
 
     def board(self, start: FloatArray) -> SceneSpec:

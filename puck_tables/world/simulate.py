@@ -189,14 +189,14 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         moving = bool(world.moving.any())
         end_time = world.time if moving else float(ends_of_motion.max())
         along = moving and moves_along(world._engine.surface)
-        carried = along and bool((ends_of_motion < math.inf).all())
-        if carried and not world.state()[:, VX:].any():  # other belts rub it
-            moving = carried = False
-        end = ENDS[CARRIED_AWAY if carried else TIME_UP if moving else AT_REST]
+        is_carried = along and bool((ends_of_motion < math.inf).all())
+        if is_carried and not world.state()[:, VX:].any():  # other belts rub it
+            moving = is_carried = False
+        end = ENDS[CARRIED_AWAY if is_carried else TIME_UP if moving else AT_REST]
     else:
         end_time, goes_round = world.come_to_rest()
-        carried = bool(world.moving[world.in_play].any())
-        end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if carried else AT_REST]
+        is_carried = bool(world.moving[world.in_play].any())
+        end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if is_carried else AT_REST]
     if len(world.names) == 1 and not world.in_play[0]:
         return _LEFT[world.events_since(0.0)[-1].what], float(world.motion_ends[0])
     return end, end_time
@@ -232,8 +232,8 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
         own = world._order
         forces = reactions(world._engine, times, states[:, own], in_play[:, own])[:, discs]
         columns |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
-    found = {name: values[back] for name, values in columns.items()}
-    return {"time": np.append(moments, end_time), **found}
+    ordered = {name: values[back] for name, values in columns.items()}
+    return {"time": np.append(moments, end_time), **ordered}
 
 
 def _number(row: Any) -> Any:

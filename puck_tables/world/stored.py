@@ -258,12 +258,12 @@ def _played(what: int, k: int, orders: Orders, bench: Bench) -> int:
     if until < math.inf:
         how = _run(engine, until, NOBODY, bench)
     else:
-        target, given = engine.clock[0], prescribed_until(engine)
-        limit = max(target, given) + orders.longest[k]
+        target, prescribed = engine.clock[0], prescribed_until(engine)
+        limit = max(target, prescribed) + orders.longest[k]
         while how == GOES_ON:
             how = _run(engine, target, NOBODY, bench)
             if how == REACHED:
-                how, target = next_target(engine, limit, given, room, bench.ended)
+                how, target = next_target(engine, limit, prescribed, room, bench.ended)
         if how == ROUND:
             how = REACHED
         if how == REACHED and engine.surface.spin == 0.0:  # it was waited for what may come
@@ -282,10 +282,10 @@ def tell(board: int, engine: Engine, first: int, bench: Bench, passed: int, out:
         row[8], row[9], row[10], row[11] = event[SLIDE], event[PUSH], event[RUB], event[LOST]
         used += 1
     for n in range(passed):
-        found, row = bench.found[n], out[used]
+        from_event, row = bench.found[n], out[used]
         row[0] = board
-        write_over(row[1:], found)
-        row[4] = -1.0 - engine.obstacles.shape[0] - found[LINE]
+        write_over(row[1:], from_event)
+        row[4] = -1.0 - engine.obstacles.shape[0] - from_event[LINE]
         for column in range(1 + COLUMNS, FOUND_COLUMNS):
             row[column] = 0.0
         used += 1

@@ -121,19 +121,19 @@ class Together:
             some, source, target, time, time + span, np.zeros(0, int) if discs is None else discs,
             np.zeros((0, 0, 6)) if rows is None else rows, scales, longest, np.empty(count), how,
         )  # fmt: skip
-        told = self._play(what, orders)
+        results = self._play(what, orders)
         apart: dict[int, g.Engine] = {}
         failed: dict[int, PuckError] = {}
         for k in np.flatnonzero((how != REACHED) & (how != WAITS)).tolist():
             try:
-                told.append(self._play_alone(orders, k, alone, apart))
+                results.append(self._play_alone(orders, k, alone, apart))
             except PuckError as error:
                 failed[int(some[k])] = error
         if failed:
             raise of_boards(failed)
         self._at[some] = np.where(how == WAITS, source, target)
         self.time = self.time.copy()
-        self.time[some], self._described = orders.after, told
+        self.time[some], self._described = orders.after, results
         if self._apart or apart:
             still = np.setdiff1d(self._at, target)
             self._apart = {slot: one for slot, one in self._apart.items() if slot in still} | apart
@@ -147,13 +147,13 @@ class Together:
             return
         engine = self._first._engine
         own = engine.discs[discs]
-        given = slips_of(own, rows)
+        slips = slips_of(own, rows)
         if what == LED:
             fastest = np.hypot(rows[:, 0, VX], rows[:, 0, VY])
             new = np.flatnonzero(fastest > scales[:, 0])
             fastest = fastest[new]
         else:
-            faster = ~(given <= scales[:, :1]).all(axis=1)
+            faster = ~(slips <= scales[:, :1]).all(axis=1)
             if what == g.STRUCK:
                 faster &= ~np.isnan(rows[:, 0, [VX, -1]]).all(axis=1)
             led = bool((own[:, LIGHTNESS] == 0.0).any()) or law_goes_to(engine.regions) < math.inf
@@ -169,14 +169,14 @@ class Together:
 
     def _play(self, what: int, orders: Orders) -> list[FloatArray]:
         """Play boards together; what happened."""
-        told: list[FloatArray] = []
+        answers: list[FloatArray] = []
 
         def work(start: int, stop: int) -> None:
             bench, out = self._a_bench()
             while start < stop:
                 start, used = stored.play(what, orders, self._store, bench, start, stop, out)
                 if used:
-                    told.append(out[:used].copy())
+                    answers.append(out[:used].copy())
             self._free.append((bench, out))
 
         while (orders.how == TO_DO).any():
@@ -185,7 +185,7 @@ class Together:
             if lacking.any():
                 self._grow()
                 orders.how[lacking] = TO_DO
-        return told
+        return answers
 
     def _on_all_cores(self, work: Callable[[int, int], None], count: int) -> None:
         """Call it for parts of so many boards; many are compiled for at once.

@@ -114,7 +114,7 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
 
     If none would, no force acts in any: that is a solution, and accelerations have but one.
     """
-    found = False
+    pressed = False
     for n in range(count):
         i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
         un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
@@ -124,8 +124,8 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
         moves = moves or (j >= 0 and slips(engine.surface, engine.discs[j], room.states[j]))
         least = HARDLY * engine.scale[1] if moves else -HARDLY * engine.scale[1]
         if row[ACTS] > 0.0 and opening(engine, i, j, t, row, room.states) < least:
-            found = True
-    return found
+            pressed = True
+    return pressed
 
 
 @inlined
@@ -196,11 +196,11 @@ def dies_out(engine: Engine, i: int, j: int, t: float, row: FloatArray, states: 
         return False
     un, _ = approach(engine, i, j, row[NX], row[NY], states)
     closing = -opening(engine, i, j, t, row, states)
-    way = _slip2(engine, i, states)
+    slip2 = _slip2(engine, i, states)
     if j >= 0:
-        way = max(way, _slip2(engine, j, states))
+        slip2 = max(slip2, _slip2(engine, j, states))
     rounded = _LOW * (abs(states[i, X]) + abs(states[i, Y]))
-    least = _LEAST * engine.scale[2] * way / engine.scale[1]
+    least = _LEAST * engine.scale[2] * slip2 / engine.scale[1]
     height = max(rounded, _FLAT * engine.discs[i, RADIUS], least)
     if closing <= 0.0 or un > 0.0 or un * un > 2.0 * closing * height:
         return False

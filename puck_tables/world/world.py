@@ -274,10 +274,10 @@ class World(Running):
         if velocity is not None and towards is None and speed is None:
             state[VX : VY + 1] = two_of("velocity", velocity, "m/s")
         elif velocity is None and towards is not None and speed is not None:
-            way = two_of("towards", towards, "m") - state[:2]
-            far, fast = math.hypot(*way), positive("speed", speed, "m/s")
+            direction = two_of("towards", towards, "m") - state[:2]
+            far, fast = math.hypot(*direction), positive("speed", speed, "m/s")
             duration = far / fast
-            state[VX : VY + 1] = fast / far * way if far > 0.0 else 0.0
+            state[VX : VY + 1] = fast / far * direction if far > 0.0 else 0.0
         else:
             raise InputError("give a velocity, or towards, where to, with a speed")
         state[SPIN] = turn
