@@ -73,7 +73,7 @@ def keep_on() -> None:
 
     Raises KeyboardInterrupt in a thread of :func:`run_chunks` that is not to finish its work.
     """
-    interrupted = getattr(_this_thread, "given_up", None)
+    interrupted = getattr(_this_thread, "interrupted", None)
     if interrupted is not None and interrupted.is_set():
         raise KeyboardInterrupt
 
@@ -87,7 +87,7 @@ def _run(
 
     def take() -> None:
         """Chunk after chunk; the calling thread is woken only by what it wants to know."""
-        _this_thread.given_up = interrupted
+        _this_thread.interrupted = interrupted
         try:
             while not interrupted.is_set():
                 with lock:

@@ -44,7 +44,7 @@ except ImportError:
 
 MOST_WORKERS = 1024  # processes of one machine: more is a slip of the hand
 _REACH, _PATIENCE = 5.0, 10.0  # s to reach a scheduler, to find a worker
-_SILENT, _QUIET = 5.0, 2.0  # s without a block until the scheduler is asked, and it may be silent
+_SILENT, _TIMEOUT = 5.0, 2.0  # s without a block until the scheduler is asked, and it may be silent
 _AHEAD = 4  # blocks given to each thread of the workers
 _LOOK = 0.2  # s between two looks
 _OWN = {  # of a cluster of one's own
@@ -139,7 +139,7 @@ def _threads(client: Any) -> int:
     where = client.scheduler.address
     try:
         try:
-            cores = client.sync(client.scheduler.ncores, callback_timeout=_QUIET)
+            cores = client.sync(client.scheduler.ncores, callback_timeout=_TIMEOUT)
         except TimeoutError:
             with watched(f"waiting for the scheduler at {where}"):
                 cores = client.sync(client.scheduler.ncores, callback_timeout=_PATIENCE)

@@ -21,7 +21,7 @@ FINEST, COARSEST = 1e-13, 1e-2  # relative: finer is rounding, looser is no answ
 _ADMISSIBLE = 1e-9  # of the speeds, at the start
 _RANK = 1e-9  # of the largest singular value: smaller ones are those of dependent constraints
 _PROBE, _PROBE_SLACK = 1e-6, 1e-3  # difference quotient that judges the derivative at the start
-_WORKS = 3  # works that are integrated along with the motion
+_COUNT = 3  # works that are integrated along with the motion
 
 
 @dataclass(frozen=True)
@@ -168,8 +168,8 @@ def constrained_motion(
     speed = float(np.abs(start.velocity).max() + np.abs(start.acceleration).max() * span) or 1.0
     scales = [float(np.abs(x).max()) + speed * span, speed, np.sum(system.masses) * speed**2]
     solved = solve_ivp(
-        slope, (t[0], t[-1]), np.concatenate([x.ravel(), v.ravel(), np.zeros(_WORKS)]),
-        method="DOP853", t_eval=t, rtol=tol, atol=tol * np.repeat(scales, [size, size, _WORKS]),
+        slope, (t[0], t[-1]), np.concatenate([x.ravel(), v.ravel(), np.zeros(_COUNT)]),
+        method="DOP853", t_eval=t, rtol=tol, atol=tol * np.repeat(scales, [size, size, _COUNT]),
         events=ends,
     )  # fmt: skip
     if solved.status < 0:

@@ -79,10 +79,10 @@ class Base:
         middle = (float(first[0] / area), float(first[1] / area))
         centre = middle
         if self.centre is not None:
-            centre_given = finite_array("centre of mass", self.centre, "m")
-            if centre_given.shape != (2,):
+            place = finite_array("centre of mass", self.centre, "m")
+            if place.shape != (2,):
                 raise InputError("centre of mass must be two numbers (x, y), m")
-            centre = (float(centre_given[0]), float(centre_given[1]))
+            centre = (float(place[0]), float(place[1]))
             if math.dist(centre, middle) <= _CENTRED * self._reach_from(middle):
                 centre = middle
         object.__setattr__(self, "centre", centre)

@@ -43,7 +43,7 @@ _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
 _LEAST_STEP = 1e-12  # between the radii of a profile
 _LEAST_SPREAD = 2.5e-7  # root mean square, of the radius at which its load stands
 _TIP = 1e-5  # the least radius that matters there
-_MOST_BENDS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
+_MOST_KINKS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
 _SECANTS = 14  # steps; then it is halved, which always ends
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
 MAX_PROFILE_BYTES = 1 << 24  # bytes: more is no profile
@@ -274,7 +274,7 @@ def _edges(radii: FloatArray, pressure: FloatArray) -> tuple[float, ...]:
     slope = np.concatenate([[0.0], np.diff(pressure) / np.diff(radii)])
     kink_size = np.abs(np.diff(slope))[1:] * np.minimum(np.diff(radii)[:-1], np.diff(radii)[1:])
     sharp = np.flatnonzero(kink_size > _STRAIGHT)
-    sharp = sharp[np.argsort(-kink_size[sharp], kind="stable")[:_MOST_BENDS]]
+    sharp = sharp[np.argsort(-kink_size[sharp], kind="stable")[:_MOST_KINKS]]
     ends = np.append(radii[:1][radii[:1] > 0.0], 1.0)
     if radii[0] == 0.0 and abs(slope[1]) * radii[1] > _STRAIGHT:
         shrinking = radii[1] * 0.1 ** np.arange(1.0, 6.0)

@@ -37,7 +37,7 @@ _SEGMENT_NODES = 20  # to rounding: test_segment_and_patch_rule
 SEGMENT_RULE = np.stack(np.polynomial.legendre.leggauss(_SEGMENT_NODES))  # on [−1, 1]
 _GAUSS_2 = 3.0**-0.5  # node of Gauss's rule of two points, exact up to degree 3
 _STEPS = 60  # of Newton's method: then another guess is tried
-_SETTLED = 1e-7  # a step of that size leaves an error of its square
+_CONVERGED = 1e-7  # a step of that size leaves an error of its square
 _EASY_DELTA = 3.9  # dimensionless: up to it the guess leads to the solution
 _FOLLOWED = 33  # heights from there to the wanted one: each is a good guess for the next
 _MAX_TURN = 0.3  # radians a step
@@ -237,7 +237,7 @@ def _newton(
         room = 1.0 - offset[moving]
         offset[moving] = 1.0 - np.clip(room - step, 0.5 * room, 2.2 * room)
         bearing[moving] += np.clip(turn, -_MAX_TURN, _MAX_TURN)
-        moving[moving] = ~((np.abs(step) <= _SETTLED * room) & (np.abs(turn) <= _SETTLED))
+        moving[moving] = ~((np.abs(step) <= _CONVERGED * room) & (np.abs(turn) <= _CONVERGED))
         if not moving.any():
             break
     return Chord(offset, bearing), moving

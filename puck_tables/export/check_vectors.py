@@ -39,7 +39,7 @@ _LAUNCHES: Sequence[tuple[float, ...]] = (
 )
 _SHARES = (0.0, 0.1, 0.5, 0.9, 0.99)  # of the stop time
 _ANGLES = (-0.5 * math.pi, -0.25 * math.pi, -0.3, 0.0, 0.8, 1.4)
-GIVEN = {"stop": 6, "state": 7, "turn": 6, "resultants": 2, "wrench": 4, "step": 3}  # numbers
+INPUTS = {"stop": 6, "state": 7, "turn": 6, "resultants": 2, "wrench": 4, "step": 3}  # numbers
 _HEIGHTS = (0.0, 1.0)  # dimensionless: both ends of the tables
 
 
@@ -57,7 +57,7 @@ def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> 
     cases = {}
     for name in functions:
         rows = made[name](Puck(radius=1.0) if kind is None else kind)
-        inputs = GIVEN[name]
+        inputs = INPUTS[name]
         cases[name] = rows.shape[1], tuple(
             value if n < inputs else float(f"{value:.{digits}g}")
             for row in rows.tolist() for n, value in enumerate(row)

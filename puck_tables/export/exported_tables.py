@@ -28,9 +28,9 @@ Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constant
 
 # Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
 # is made of all of them keeps it (measured, tests/test_export.py).
-_STOP, _CURVE, _CONSTANT = 0.5, 0.3, 0.02
+_STOP, _SIMILARITY, _CONSTANT = 0.5, 0.3, 0.02
 # the same under another pressure law
-_LAW_STOP, _LAW_ORBIT, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
+_LAW_STOP, _LAW_MOTION, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
 # of a slip that friction takes in a step, and so many times the least part of a base over its reach
 _SHARE, _FEET = 0.05, 8.0
 
@@ -49,8 +49,8 @@ def _shipped(tol: float) -> dict[str, SplineFit]:
     stops, parts, inverse = functions_of(table)
     return {
         "STOP": spline_fit(stops, _STOP * tol, haste=2),
-        "CURVE": spline_fit(parts, _CURVE * tol),
-        "INVERSE": spline_fit(inverse, _CURVE * tol),
+        "SIMILARITY": spline_fit(parts, _SIMILARITY * tol),
+        "INVERSE": spline_fit(inverse, _SIMILARITY * tol),
         "CONSTANTS": fit_constants(table.constants, _CONSTANT * tol),
     }
 
@@ -85,7 +85,7 @@ def _fit_within(
         result["STOP"] = spline_fit(values.stops, _LAW_STOP * tol, haste=2)
     if "state" in parts:
         try:
-            result["ORBIT"] = spline_fits(values.limit_motions.parts, _LAW_ORBIT * tol)
+            result["MOTION"] = spline_fits(values.limit_motions.parts, _LAW_MOTION * tol)
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "

@@ -43,7 +43,7 @@ _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
 _LAST, _STEP = 40.0, 1e-13  # the largest z that is followed, and the local error
 _TAIL = 0.1  # of the error asked for: what may still change after the end of a table
 _TRIED = 401  # places at which it is seen what still changes
-_BESIDE = 0.02  # of ln(rω/v): how far beside the limit it is seen how fast it draws orbits
+_NEARBY = 0.02  # of ln(rω/v): how far beside the limit it is seen how fast it draws orbits
 _INSIDE = 0.01  # a line so far from all limits is on the orbit
 
 
@@ -218,7 +218,7 @@ def _limit_motions(values: LawValues) -> LimitMotions:
 
     slow_end, fast_end = slopes(np.full(HEIGHTS, -600.0)), slopes(np.full(HEIGHTS, 600.0))
     u_limit = _u(limits)
-    drawn = (slopes(u_limit + _BESIDE)[0] - slopes(u_limit - _BESIDE)[0]) / (2.0 * _BESIDE)
+    drawn = (slopes(u_limit + _NEARBY)[0] - slopes(u_limit - _NEARBY)[0]) / (2.0 * _NEARBY)
     # only a scale: a straight line in δ² needs no further powers
     drawn = np.polyval(np.polyfit(shares**2, drawn, 1), shares**2)
     rates = [-slow_end[0], fast_end[0], drawn]

@@ -16,7 +16,7 @@ from puck_tables._core.arrays import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.export.check_vectors import GIVEN, cases_of
+from puck_tables.export.check_vectors import INPUTS, cases_of
 from puck_tables.export.exported_tables import base_tables, law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
@@ -343,7 +343,7 @@ def _self_test(widths: Mapping[str, int]) -> dict[str, ast.FunctionDef]:
     """The tests of each function by vectors of so many numbers, and that of the whole file."""
     text = ""
     for name, width in widths.items():
-        inputs = GIVEN[name]
+        inputs = INPUTS[name]
         arguments = ", ".join(["c[k]", *(f"c[k + {n}]" for n in range(1, inputs))])
         text += _MISSES.format(
             name=name, upper=name.upper(), width=width, given=inputs, answers=width - inputs,

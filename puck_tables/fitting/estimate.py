@@ -76,7 +76,7 @@ _WIDE = 1.4  # times the usual median: up to it a scatter may be chance
 _FEW = 2.5  # residuals for each unknown
 _LEAST_DEGREES = 0.5  # residuals: of less nothing is an outlier
 _ROUNDS = 6  # of a fit, its noise and what is left out, at most
-_SETTLED = 1e-3  # of a standard deviation of the noise
+_CONVERGED = 1e-3  # of a standard deviation of the noise
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
 
 
@@ -150,7 +150,7 @@ def estimate(problem: Problem, start: FloatArray, strict: bool = False) -> Estim
         problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
         again = _kept(problem, rows / _foreseen(slopes, kept), degrees, strict)
-        if change < _SETTLED and np.array_equal(again, kept):
+        if change < _CONVERGED and np.array_equal(again, kept):
             break
         kept = again
     x = problem.within(x)

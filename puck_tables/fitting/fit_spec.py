@@ -30,7 +30,7 @@ from puck_tables.fitting.parameters import (
     OF_IMPACTS,
     OF_PAIRS,
     OF_WALLS,
-    OWN_CURVE,
+    OWN_MOTION,
     POSITIVE,
     PUCK,
     SMALLEST,
@@ -43,7 +43,7 @@ from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_nam
 from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
 from puck_tables.puck import Puck
 
-_KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
+_KIND = (*OWN_MOTION, "drag", *INTEGRATED)  # change the curve itself
 TINY = 1e-30  # step of derivatives along the imaginary axis
 _FARTHEST = 10.0  # radii, of what is tracked from the centre: a stick on the body may be longer
 _LEAST = 1e-9  # in its unit, of what must be more than 0

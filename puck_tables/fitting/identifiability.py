@@ -136,8 +136,8 @@ def ran_away(problem: Problem, x: FloatArray) -> str:
 
 
 _MEMBER = 0.2  # component of a direction that is named
-_TOLD_ALL = 2  # other motions that are told in full
-_TOLD = 0.1  # of what is plausible: an error that says something
+_IN_FULL = 2  # other motions that are told in full
+_INFORMATIVE = 0.1  # of what is plausible: an error that says something
 _BETTER = 0.2  # times the error of the film that there is
 _SPINNING = 1.0  # rω/v of a launch with more spin
 _FASTEST = 1e3  # m/s, of a rim: more spin than that is no advice
@@ -157,8 +157,8 @@ def not_identifiable(
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     marked = result.problem.angled
-    sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_TOLD_ALL]]
-    if others := len(minima[_TOLD_ALL:]):
+    sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_IN_FULL]]
+    if others := len(minima[_IN_FULL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
         sentences.append(f"{others} more {more} about as well.")
     if marked and any(minimum.rise < -(Z95**2) for minimum in minima):
@@ -244,7 +244,7 @@ def _remedy(result: Estimate, shared: list[str], members: list[tuple[int, str]])
     now, remedies = errors(result.problem, result.x), list[str]()
     for words, problem, x in _other_films(result):
         others = errors(problem, x)
-        enough = (others < _TOLD) & (others < _BETTER * now)
+        enough = (others < _INFORMATIVE) & (others < _BETTER * now)
         if enough.all() and not any(one in words for one in remedies):
             remedies.append(words)
     return (

@@ -52,7 +52,7 @@ _PARTS = np.outer(
     np.sqrt((np.arange(6) + 0.5) / 6.0), np.exp(1j * np.pi * ((np.arange(16) + 0.5) / 16.0 - 0.5))
 ).ravel()  # fmt: skip
 _LAW_SPEEDS = tuple(np.geomspace(0.02, 0.9, 12).tolist())  # of the fastest slip
-_BELT_SPEEDS, _BELT_WAYS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
+_BELT_SPEEDS, _BELT_DIRECTIONS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
 
 
 class _Moments(NamedTuple):
@@ -135,7 +135,7 @@ def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:
     if "law_speed" in spec.free:
         yield from ({"law_speed": share * fastest} for share in _LAW_SPEEDS)
     elif {"belt_x", "belt_y"} & {*spec.free}:
-        angles = 2.0 * np.pi * np.arange(_BELT_WAYS) / _BELT_WAYS
+        angles = 2.0 * np.pi * np.arange(_BELT_DIRECTIONS) / _BELT_DIRECTIONS
         ends = [one.speed[:2, -1] for one in films]
         tried = [share * fastest * np.array([np.cos(a), np.sin(a)])
                  for share in _BELT_SPEEDS for a in angles]  # fmt: skip

@@ -71,7 +71,7 @@ _PART = 128  # rows, at the least
 ROBUST = 3.0  # residuals that are larger count less
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
-FROM_BESIDE = ((4, 2), (30, 1))
+FROM_NEARBY = ((4, 2), (30, 1))
 FROM_SLOWING = ((3, 3), (8, 2), (30, 1))
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is

@@ -98,14 +98,14 @@ def _left(problem: Problem, x: FloatArray) -> _Left:
 class _Reading(NamedTuple):
     """What else may be: in words, by how much smaller residuals are, if a floor.
 
-    ``bends``: if one that bends any path, as a slope does: it comes first only if about the best,
-    and not before angles read otherwise; ``same``: if it takes no more numbers, as these.
+    ``turns_paths``: if one that bends any path, as a slope does: it comes first only if about the
+    best, and not before angles read otherwise; ``same``: if it takes no more numbers, as these.
     """
 
     words: str
     gain: float
     floor: bool = False
-    bends: bool = False
+    turns_paths: bool = False
     same: bool = False
 
 
@@ -145,7 +145,7 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
     least = max([best - _BETTER, *(one.gain + _BETTER for one in near if one.same)])
     near.sort(
         key=lambda one: (
-            not one.floor or (one.bends and one.gain < least), -one.gain - _BETTER * one.same
+            not one.floor or (one.turns_paths and one.gain < least), -one.gain - _BETTER * one.same
         )
     )  # fmt: skip
     if near:

@@ -42,7 +42,7 @@ class Known(NamedTuple):
     jitter: bool = False
 
 
-_NONE_GIVEN = Known()
+_NONE_KNOWN = Known()
 EXACT = 1e-12  # of a cost: what a step still gains where a minimum is found
 ROUGH = 1e-4  # of it, where only the size of residuals is asked
 
@@ -156,7 +156,7 @@ class Problem(Slides):
     impact_specs: tuple[ImpactSpec, ...] = ()
     jitter: float = 0.0
     weights: tuple[FloatArray, ...] = ()
-    known: Known = _NONE_GIVEN
+    known: Known = _NONE_KNOWN
     smooth: tuple[float, float] = (math.nan, math.nan)
     level: float = EXACT
 
@@ -218,7 +218,7 @@ class Problem(Slides):
             )
         straight = self.films[n].straight
         if straight is not None and not self.weights:  # which lie along the motion
-            rows[X] = straight.way[0] * rows[X] + straight.way[1] * rows[Y]
+            rows[X] = straight.direction[0] * rows[X] + straight.direction[1] * rows[Y]
         if straight is not None or self.films[n].counts is not None:
             counts = counting_of(self.films[n])
             rows *= counts.reshape(3, -1, *[1] * (deviations.ndim - 2))

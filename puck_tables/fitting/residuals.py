@@ -192,7 +192,10 @@ OUT_OF_LEVEL = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
-_RANK, _SEEN = 1e-9, 2e-3  # of the largest slope; of what a force does: less is computed inexactly
+_RANK, _VISIBLE = (
+    1e-9,
+    2e-3,
+)  # of the largest slope; of what a force does: less is computed inexactly
 
 
 class SideForces(NamedTuple):
@@ -267,12 +270,12 @@ class _Explained(NamedTuple):
 def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explained:
     """What forces (n, k), as shares of all they do, explain of residuals that no unknown does.
 
-    What is left of them below :data:`_SEEN` is what is computed inexactly, and tells nothing.
+    What is left of them below :data:`_VISIBLE` is what is computed inexactly, and tells nothing.
     """
     from scipy.special import fdtrc
 
     basis, sizes, turned = np.linalg.svd(columns, full_matrices=False)
-    kept = sizes > _SEEN
+    kept = sizes > _VISIBLE
     basis, seen, turned = basis[:, kept], sizes[kept], turned[kept]
     along, left, count = basis.T @ rows, float(rows @ rows), seen.size
     less = float(along @ along)

@@ -24,7 +24,7 @@ from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
 MISFIT, LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
 _FARTHEST = 16.0  # of the square of a residual
-_DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
+_DIRECTIONS, _CERTAIN, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
 _LOST = 1e4  # rad: places tell nothing of how it turns
 _FOLLOWED = 12  # starts of a search that agree best
@@ -154,7 +154,7 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
         order = np.argsort(-variances)[:_DIRECTIONS]
         spreads, axes = np.sqrt(np.maximum(variances[order], 0.0)), axes[:, order]
         swings = spreads * np.abs(axes).max(axis=0)
-        counts = [1 + 2 * math.ceil(_WIDE * one / _STEP) if one > _TOLD else 1 for one in swings]
+        counts = [1 + 2 * math.ceil(_WIDE * one / _STEP) if one > _CERTAIN else 1 for one in swings]
         if not np.isfinite(swings).all() or swings.max() > _LOST:
             continue
         fewer = (math.prod(counts) * seen.sum() / _MOST) ** (1.0 / _DIRECTIONS)

@@ -194,7 +194,7 @@ class Carrom(ShotGame):
 
     An action is the place of the striker on its base line, ±0.21 m, its direction, ±80° to the line
     across, and its speed, 0.2 to 6 m/s; where a man is in the way, the nearest free place is taken.
-    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Seen are x, y, m,
+    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Obs are x, y, m,
     of all men and 1 for each on the board, then the share of shots made.
     """
 
@@ -246,7 +246,7 @@ class Crokinole(ShotGame):
 
     An action is the place on the line of the own quarter, ±45°, the direction, ±30° to the middle,
     and the speed, 0.2 to 3 m/s.  Points are those of the own discs less those of the others: 20 in
-    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Seen are
+    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Obs are
     x, y, m, of all discs, own first, and 1 for each on the board, then the share of shots made.
     """
 

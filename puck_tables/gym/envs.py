@@ -22,7 +22,7 @@ from puck_tables.gym.stone_games import Curling, Shuffleboard
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.worlds import Worlds
 
-Seen = npt.NDArray[np.float32]
+Obs = npt.NDArray[np.float32]
 GAMES: dict[str, type[TableGame]] = {
     kind.__name__: kind
     for kind in (AirHockey, AirHockeyAlone, Carrom, Crokinole, Shuffleboard, Curling, PushToPose)
@@ -31,7 +31,7 @@ _MODES = ("rgb_array", "human")
 RENDERED: dict[str, Any] = {"render_modes": list(_MODES), "render_fps": 60}
 
 
-class ManyTables(VectorEnv[Seen, Any, Any]):
+class ManyTables(VectorEnv[Obs, Any, Any]):
     """A game on many boards at once, all in one compiled call on all cores.
 
     A board whose game is over begins anew at the next step, whose action for it counts for nothing
@@ -95,7 +95,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Seen, dict[str, Any]]:
+    ) -> tuple[Obs, dict[str, Any]]:
         """Begin anew on all boards; what is seen.
 
         ``options`` are for none here.
@@ -107,7 +107,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         self._begin(np.arange(self.num_envs))
         return self._observed(), {}
 
-    def step(self, actions: npt.ArrayLike) -> tuple[Seen, FloatArray, Truth, Truth, dict[str, Any]]:
+    def step(self, actions: npt.ArrayLike) -> tuple[Obs, FloatArray, Truth, Truth, dict[str, Any]]:
         """Make a move on every board: what is seen, earned, where a game ended, or was cut off.
 
         Parameters
@@ -207,7 +207,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         for row in self._old:
             row[boards] = now[boards]
 
-    def _observed(self) -> Seen:
+    def _observed(self) -> Obs:
         """What is seen, late and with errors."""
         self._old = [*self._old[1:], self.game.seen(self.tables)]
         seen = self._old[0].copy()
@@ -226,7 +226,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         return checked
 
 
-class OneTable(gymnasium.Env[Seen, Any]):
+class OneTable(gymnasium.Env[Obs, Any]):
     """A game on one board; parameters as of :class:`ManyTables`, and factors drawn at each game.
 
     >>> table = OneTable("Crokinole")
@@ -245,7 +245,7 @@ class OneTable(gymnasium.Env[Seen, Any]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Seen, dict[str, Any]]:
+    ) -> tuple[Obs, dict[str, Any]]:
         """Begin anew; what is seen."""
         super().reset(seed=seed)
         self.many.np_random = self.np_random
@@ -253,7 +253,7 @@ class OneTable(gymnasium.Env[Seen, Any]):
         self._rendered()
         return seen[0], info
 
-    def step(self, action: npt.ArrayLike) -> tuple[Seen, float, bool, bool, dict[str, Any]]:
+    def step(self, action: npt.ArrayLike) -> tuple[Obs, float, bool, bool, dict[str, Any]]:
         """Make a move: what is seen, earned, whether the game ended, or was cut off."""
         parts = self.many.step(np.asarray(action)[None])
         self._rendered()

@@ -8,12 +8,12 @@ import numpy as np
 from gymnasium.spaces import Box
 from pettingzoo import ParallelEnv
 
-from puck_tables.gym.envs import RENDERED, ManyTables, Seen
+from puck_tables.gym.envs import RENDERED, ManyTables, Obs
 
 PLAYERS = ("left", "right")
 
 
-class TwoPlayers(ParallelEnv[str, Seen, Any]):
+class TwoPlayers(ParallelEnv[str, Obs, Any]):
     """Air hockey: an action of each is vx, vy of its mallet, from −1 to 1, of 4 m/s.
 
     Each sees the table from its end, as :class:`puck_tables.gym.air_hockey.AirHockey` tells; a goal
@@ -49,7 +49,7 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, Seen], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, Obs], dict[str, dict[str, Any]]]:
         """Serve; what each sees."""
         self.agents = list(PLAYERS)
         seen, _ = self._many.reset(seed=seed)
@@ -72,7 +72,7 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
         """A picture, if a mode was asked for."""
         return self._many.picture()
 
-    def _split(self, seen: Seen) -> dict[str, Seen]:
+    def _split(self, seen: Obs) -> dict[str, Obs]:
         return dict(zip(PLAYERS, np.split(seen[0], 2), strict=True))
 
 

@@ -56,15 +56,15 @@ class _Announcer(event.Listener):
     """
 
     def __init__(self) -> None:
-        self._found: list[tuple[int, int, int]] = []
+        self._thresholds: list[tuple[int, int, int]] = []
 
     def on_start(self, event: Any) -> None:
-        self._found.append(gc.get_threshold())
-        gc.set_threshold(1_000_000, *self._found[-1][1:])
+        self._thresholds.append(gc.get_threshold())
+        gc.set_threshold(1_000_000, *self._thresholds[-1][1:])
 
     def on_end(self, event: Any) -> None:
-        if self._found:  # none where a function of somebody else's began before this was here
-            gc.set_threshold(*self._found.pop())
+        if self._thresholds:  # none where a function of somebody else's began before this was here
+            gc.set_threshold(*self._thresholds.pop())
 
 
 event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]

@@ -23,17 +23,19 @@ _canonical: Any = canonicalize_cfg
 _options: Any = ConfigStack
 _find_type: Any = _Called.get_call_type
 _list_all: Any = _AfterStep.run
-_found: dict[Any, tuple[Any, Any]] = {}  # by function, types and options: signature, what lowers it
+_signatures: dict[
+    Any, tuple[Any, Any]
+] = {}  # by function, types and options: signature, what lowers it
 
 
 def _call_type(function: Any, context: Any, args: Any, named: Any) -> Any:
     """Which function of that name is called with such arguments; found once."""
     key = function, context, args, tuple(named.items()), _options.top_or_none()
-    if key in _found:
-        signature, function._impl_keys[signature.args] = _found[key]
+    if key in _signatures:
+        signature, function._impl_keys[signature.args] = _signatures[key]
     else:
         signature = _find_type(function, context, args, named)
-        _found[key] = signature, function._impl_keys[signature.args]
+        _signatures[key] = signature, function._impl_keys[signature.args]
     return signature
 
 

@@ -43,7 +43,7 @@ from puck_tables.table.singular_lines import opening_angle
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
-_FINEST_TWIN = 4e-15  # of a step: below, rounding is all that two runs differ by
+_FINEST_CHECK = 4e-15  # of a step: below, rounding is all that two runs differ by
 _STEP_LIMIT = 20_000  # room for so many is made; more is a motion that does not end
 _SAFETY = 1.5  # states between the moments compared
 _ROUNDING = 1e-14  # of a motion as long as Q/J
@@ -266,7 +266,7 @@ def _attempt(
     run = integrated(u, friction, stepping)
     coarser = source.coarser(setting.accuracy)
     if coarser is None:
-        finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_TWIN))
+        finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_CHECK))
         difference = float(np.abs(run.stop[T : X + 2] - finer.stop[T : X + 2]).max())
         return run, ErrorEstimate(difference + 0.01 * tol, friction.error)
     finer = integrated(u, friction, stepping.finer(2.0, 0.01, FINEST_LOCAL))

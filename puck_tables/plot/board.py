@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _WIDE, _HIGH = 9.0, 7.0  # in, of a panel at most
 _LOW = 1.2  # in, at least
 LEGEND_ROW = 6  # entries
-_BESIDE, _UNDER = 0.85, 0.6  # in, for the labels of axes
+_LEFT, _UNDER = 0.85, 0.6  # in, for the labels of axes
 _TITLE, _NOTE = 0.3, 0.2  # in, a line of the title, of a note above a panel
 _NARROW = 6.5  # in, at least: for the legend
 _SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as well
@@ -119,7 +119,7 @@ def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
 def panels_for(boxes: list[Box]) -> tuple[Figure, list[Axes]]:
     """A figure with a panel for each box."""
     heights = [size_of(box)[1] for box in boxes]
-    figure = canvas(max(*(size_of(box)[0] + _BESIDE for box in boxes), _NARROW), _NARROW)
+    figure = canvas(max(*(size_of(box)[0] + _LEFT for box in boxes), _NARROW), _NARROW)
     panels = figure.subplots(len(boxes), 1, squeeze=False, height_ratios=heights)[:, 0]
     return figure, list(panels)
 

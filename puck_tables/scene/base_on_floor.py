@@ -47,7 +47,7 @@ from puck_tables.scene.floor_map import (
 )
 from puck_tables.scene.floor_map import REACH as PATCH_REACH
 
-_TWO_CUTS = 12  # times as many pieces as there were are after two cuts at most
+_TWO_EDGES = 12  # times as many pieces as there were are after two cuts at most
 _NONE = -1  # no stretch
 
 
@@ -134,7 +134,7 @@ def _in_polygon(
             )  # fmt: skip
             px, py, ax, ay = ax, ay, bx, by
             k += 1
-            goes_on = k < count - 1 and _TWO_CUTS * (end - begin) <= half
+            goes_on = k < count - 1 and _TWO_EDGES * (end - begin) <= half
             if goes_on:
                 bx, by = _from_base(floor_map, *corner_of(floor_map, first + k + 1))
                 turns_left = sense * ((ax - px) * (by - ay) - (ay - py) * (bx - ax)) > 0.0

@@ -98,7 +98,7 @@ class FloorMap(NamedTuple):
         return np.concatenate([first, *tables, self.base, *self.laws, left, room])
 
 
-NO_GROUND = np.empty(0)
+NO_FLOOR_MAP = np.empty(0)
 
 
 @inlined
@@ -224,7 +224,7 @@ def sum_over(floor_map: FloatArray, vx: float, vy: float, every: bool) -> None:
         _sum_with(floor_map, part, load)
 
 
-OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
+OUTSIDE, OVERLAPS, INSIDE = range(3)  # how a base lies to a patch
 
 
 @inner

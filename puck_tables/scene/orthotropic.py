@@ -15,7 +15,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.elliptic_sums import Ellipse, disc_sums
 
-_SETTLED = 4e-15  # rounding of a direction
+_CONVERGED = 4e-15  # rounding of a direction
 LEAST_RATIO = 0.03  # of f in the two directions; below, steps are many
 
 
@@ -124,7 +124,7 @@ def elliptic_demand(
             resist = -(rx * ex + ry * ey)
             more, less = force * abs(turning) * radius, abs(torque) * resist
             off = (more - less) / (more + less)
-            if abs(off) <= _SETTLED or high - low <= _SETTLED:
+            if abs(off) <= _CONVERGED or high - low <= _CONVERGED:
                 break
             low, high, first, last, side = _narrowed(low, high, first, last, side, phi, off)
         if force == 0.0:
@@ -158,7 +158,7 @@ def _direction_against(
         bx, by = along * ex - across * ey, along * ey + across * ex
         rx, ry, _ = mean_friction(law, cosine * bx, cosine * by, sine)
         off = (ey * rx - ex * ry) / math.hypot(rx, ry)
-        if abs(off) <= _SETTLED or high - low <= _SETTLED:
+        if abs(off) <= _CONVERGED or high - low <= _CONVERGED:
             break
         low, high, first, last, side = _narrowed(low, high, first, last, side, turn, off)
     return bx, by

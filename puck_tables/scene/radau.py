@@ -45,7 +45,9 @@ _ITERATIONS = 12  # of Newton's method: beyond, the step is shortened
 _RELATIVE = 1e-3  # of the slip: no step is worse
 _ROUNDING = 1e-12  # of the scales: what no iteration makes better, and
 _NOISE = 1e-14  # of what friction alone would do in the step
-_WAY = 1e-14  # of a step's way: what its places and energies are known to, however short it is
+_OF_LENGTH = (
+    1e-14  # of a step's way: what its places and energies are known to, however short it is
+)
 _SURE = 1e-6  # of it: how well the stages are known
 
 
@@ -220,7 +222,7 @@ def _error(
             b[i - VX] = defect
         else:
             length = abs(work[0, i]) / scale[i] + left / scale[X]
-            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _WAY * length))
+            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _OF_LENGTH * length))
     _solve(matrix, order, b)
     for i in range(_STIFF):
         size = scale[VX + i]

@@ -21,10 +21,10 @@ from puck_tables.scene.forces import prescribed_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, friction_force
 from puck_tables.scene.ingredients import (
     BLADE,
-    CARRIED,
     FREE,
     PIVOT,
     RAIL,
+    STICKING,
     Body,
     DryFriction,
     Phase,
@@ -185,7 +185,7 @@ def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = prescribed_force(model.forces, phase.piece, t)
     torque -= body.inertia * surface.turn
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
-    static = surface.static if phase.mode == CARRIED else 1.0
+    static = surface.static if phase.mode == STICKING else 1.0
     friction = friction_at(phase.friction, model.forces.drive, phase.piece, t)
     friction = at_slip_zero(friction, static)
     put_at(friction, y[X], y[Y], y[THETA])

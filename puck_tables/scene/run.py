@@ -36,9 +36,9 @@ EVENTS = "stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhan
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 HEATS = ("heat_dry", "heat_viscous", "heat_rims", "heat_impact")
-WORKS = ("work_given", "work_support", "work_driven")
+WORK_NAMES = ("work_given", "work_support", "work_driven")
 # numbers of a run as a whole over time; all other columns are of its pucks
-SHARED = ("time", "energy_given", "energy_gone", *WORKS, *HEATS)
+SHARED = ("time", "energy_given", "energy_gone", *WORK_NAMES, *HEATS)
 SLIPS = ("slip_speed", "slip_angle")  # in the laboratory
 
 
@@ -296,7 +296,7 @@ def ledger(columns: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     energy = np.asarray(columns["kinetic_energy"])
     work = np.asarray(columns["energy_given"])
     left = energy.sum(axis=-1) if energy.ndim > work.ndim else energy  # of several pucks
-    gains = [work, *(columns.get(name, 0.0) for name in WORKS)]
+    gains = [work, *(columns.get(name, 0.0) for name in WORK_NAMES)]
     losses = [left, *(columns.get(name, 0.0) for name in ("energy_gone", *HEATS))]
     missing = np.abs(sum(gains) - sum(losses))
     return missing, np.max(np.abs(np.broadcast_arrays(*gains, *losses)), axis=0)

@@ -21,7 +21,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.unit_motion import direction
-from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME, TURN  # two are bounded
+from puck_tables.stopping.aim_lookup import DEFLECTION, RIM, SPEED, TIME, TURN  # two are bounded
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launch_arrays import fits
 from puck_tables.stopping.launch_family import (
@@ -86,7 +86,7 @@ class LaunchSearch:
             logs[:, :TIME] = np.minimum(logs[:, :TIME], limits)
         of = away[which]
         speed, turning, time = _numbers(logs[:, :TURN] - [0.0, math.log(puck.radius), 0.0]).T
-        heading = np.arctan2(places[of, 1], places[of, 0]) - sense * logs[:, BEND]
+        heading = np.arctan2(places[of, 1], places[of, 0]) - sense * logs[:, DEFLECTION]
         rows = np.empty((of.size, ANGLE + 1))
         rows[:, OF], rows[:, SPIN], rows[:, STOP_TIME] = of, sense * turning, time
         with np.errstate(over="ignore"):  # then the launch does not fit either

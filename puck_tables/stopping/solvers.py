@@ -56,7 +56,7 @@ class BaseSolver:
 
     method = "integrated"
     selections: tuple[Selection, ...] = ()
-    launched = ("launch_vx", "launch_vy", "launch_spin")
+    launch_columns = ("launch_vx", "launch_vy", "launch_spin")
     outputs = tuple(name for name in OUTPUTS if name != "turn_angle")
 
     def __init__(self, shape: Base, tol: float) -> None:

@@ -50,12 +50,12 @@ def tall_resultants(phi: FloatArray, delta: float) -> Resultants:
     opened = np.flatnonzero(delta > critical_delta(phi))
 
     def work(start: int, stop: int) -> None:
-        from puck_tables.kernels.one_sided_kernel import FOUND, SPIN, fill_balances
+        from puck_tables.kernels.one_sided_kernel import BALANCE, SPIN, fill_balances
 
         some = opened[start:stop]
         ratio, fast = direction.ratio[some], direction.fast_spin[some]
         guess = np.stack(guessed_chord(ratio, fast, np.full(some.size, delta)))
-        out = np.empty((some.size, FOUND))
+        out = np.empty((some.size, BALANCE))
         lost = fill_balances(ratio, fast, delta, guess, LINE_RULE, SEGMENT_RULE, out)
         resultants[:, some] = out[:, : SPIN + 1].T
         if lost:

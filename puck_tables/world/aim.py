@@ -31,7 +31,7 @@ from puck_tables.world.targets import Target, lying_there, out_of_reach, target_
 
 _FIRST = 1e-7  # of the range: the first step from a launch to the ends of its interval
 _LADDER = 24  # steps, each twice the one before
-_CUT, _CUTS = 12, 4  # into how many parts a bracket of an end is cut, and how often
+_PARTS, _DIVISIONS = 12, 4  # into how many parts a bracket of an end is cut, and how often
 _WITHIN = 31  # places in an interval that are looked at
 _TURNS = 2  # from the middle of one interval to that of the other
 _MOST = 16  # regions
@@ -50,21 +50,21 @@ class LaunchRegions(NamedTuple):
 
 
 class Pocketing:
-    """Regions of launches on a board that end in the obstacle ``fate``, with few enough impacts.
+    """Regions of launches on a board that end in the obstacle ``outcome``, with few enough impacts.
 
-    ``most``: how many; ``asked``: whether by the way asked for; ``low``, ``high``: between which
+    ``most``: how many; ``wanted``: whether by the way asked for; ``low``, ``high``: between which
     the speed (or spin) may be.
     """
 
     def __init__(
         self, shots: Shots, outcome: int, most: int, wanted: bool, low: float, high: float
     ) -> None:
-        self.shots, self.fate, self.most, self.asked = shots, outcome, most, wanted
+        self.shots, self.outcome, self.most, self.wanted = shots, outcome, most, wanted
         self.low, self.high = low, high
 
     def falls(self, landings: Landings) -> Which:
         """Which of them end there."""
-        return good(landings, self.most, self.asked) & (landings.fates == self.fate)
+        return good(landings, self.most, self.wanted) & (landings.outcomes == self.outcome)
 
     def regions(self, launches: FloatArray) -> LaunchRegions:
         """The regions in which some of these launches lie, the widest first.
@@ -114,8 +114,8 @@ class Pocketing:
                 room = sign * ((self.low, self.high)[side] - middles[:, 1])
             steps = np.minimum(_FIRST * span * 2.0 ** np.arange(_LADDER), room[:, None])
             inner, outer = self._last_in(middles, axis, sign, np.zeros_like(room), steps)
-            for _ in range(_CUTS):
-                parts = np.linspace(0.0, 1.0, _CUT + 1)[1:]
+            for _ in range(_DIVISIONS):
+                parts = np.linspace(0.0, 1.0, _PARTS + 1)[1:]
                 steps = inner[:, None] + (outer - inner)[:, None] * parts
                 inner, outer = self._last_in(middles, axis, sign, inner, steps)
             within = inner[:, None] * (np.arange(_WITHIN) + 1.0) / _WITHIN
@@ -164,7 +164,7 @@ class Search(NamedTuple):
         headings = headings_for(shots.scene, wanted.striker, effort.headings)
         has_through, itself = wanted.through >= 0, wanted.puck == wanted.striker
         sample = take_sample(aimed_at, headings, seconds, most, effort)
-        fine = good(sample.landings, most, has_through) & (sample.landings.fates == 0)
+        fine = good(sample.landings, most, has_through) & (sample.landings.outcomes == 0)
         fine &= itself | (sample.landings.lengths > 0)
         close = shots.close_to(seconds.max())
         roots = stops_at(aimed_at, sample, fine, wanted.place, close, self.low, self.high)

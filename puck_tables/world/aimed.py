@@ -131,7 +131,7 @@ class BoardAim(Result):
         >>> edge = Edge((0.82, 0.0), normal=(-1, 0))
         >>> table = Scene(pucks=[Puck(0.03, friction=0.1)], edges=[edge])
         >>> odds = table.aim((0.8, 0.0), spin=0.0).odds(speed=0.05, within=0.1)
-        >>> round(odds.found.value, 2), round(odds.best.value, 2)         # short of the edge
+        >>> round(odds.nominal.value, 2), round(odds.best.value, 2)         # short of the edge
         (0.5, 0.58)
         """
         self.board(number)  # which refuses a number of none

@@ -44,8 +44,8 @@ from puck_tables.world.segment_starts import Room, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 from puck_tables.world.step_ledger import WORK_COLUMNS
 
-PRINT, LENGTH, FATE, PASSES = range(4)  # columns of a course
-COURSE_COLUMNS = 4  # the four above
+PRINT, LENGTH, OUTCOME, PASSES = range(4)  # columns of a course
+SEQUENCE_COLUMNS = 4  # the four above
 
 _PRIME = 2147483647  # products of two numbers below it fit 64 bits
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
@@ -69,7 +69,7 @@ def trace(
     for i in range(engine.discs.shape[0]):
         prints[i], marks[i] = i + 1, 0
     events = engine.counts[N_EVENTS]
-    sequence[FATE] = 0
+    sequence[OUTCOME] = 0
     for n in range(events):
         patience(1)
         what, i = int(engine.events[n, WHAT]), int(engine.events[n, WHO])
@@ -82,7 +82,7 @@ def trace(
         if j >= 0:
             prints[j] = (both % _PRIME * 40692 + j + 1) % _PRIME
         elif i == disc and what in (POCKETED, OVER_EDGE):
-            sequence[FATE] = j
+            sequence[OUTCOME] = j
     sequence[PRINT], sequence[LENGTH], sequence[PASSES] = prints[disc], 0, 0
     marks[disc] = 1
     for back in range(events):
@@ -227,7 +227,7 @@ def follow_all(
     ends = Ends(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty((runs, count)),
         np.empty(runs), np.empty(runs), np.empty(runs, np.int64),
-        np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
+        np.zeros((runs, SEQUENCE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
     )  # fmt: skip
     scales = _scales(engine, first, discs, launches)
     limits, prescribed = limits_of(engine, scales)

@@ -64,7 +64,7 @@ def _write_variables(buffer: GroupBuffer, scales: Scales, modes: IntArray) -> in
     """
     size, row = 0, 0
     for c in range(modes.shape[0]):
-        sight = buffer.sights[c]
+        sight = buffer.kinematics[c]
         rough = sight[GRIP] > 0.0
         if buffer.matrix[row, row] > 0.0:  # else between two that cannot move
             v = buffer.variables[size]
@@ -225,7 +225,7 @@ def modes_of_lemke(buffer: GroupBuffer, modes: IntArray, scales: Scales) -> bool
         return False
     i, row = 0, 0
     for c in range(modes.shape[0]):
-        sight = buffer.sights[c]
+        sight = buffer.kinematics[c]
         rough, slip = sight[GRIP] > 0.0, sight[SLIP]
         moves = i < size and buffer.first[i] == row
         row += 2 if rough else 1
@@ -278,7 +278,7 @@ def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales, may_slid
     slack = 0.5 * LEVEL * scales.rate
     if soft == 0.0:  # between two that cannot move nothing is known, if they do not part
         return APART if gap > slack else mode
-    sight, push, rim = buffer.sights[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
+    sight, push, rim = buffer.kinematics[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
     if mode == APART:
         if gap >= -slack:
             return APART

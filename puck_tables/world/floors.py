@@ -17,7 +17,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, law_top, load_under
-from puck_tables.scene.floor_map import NO_GROUND
+from puck_tables.scene.floor_map import NO_FLOOR_MAP
 from puck_tables.scene.floor_parts import (
     belts_of,
     count_parts,
@@ -143,7 +143,7 @@ def regions_of(
         ]  # fmt: skip
         any_one = next(one for one in own if one is not None)
         limits = of_one_shape([any_one if one is None else one for one in own])
-    floor_map, several = NO_GROUND, may_be_mixed(scene)
+    floor_map, several = NO_FLOOR_MAP, may_be_mixed(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)
         loads, limits = (
@@ -172,7 +172,7 @@ def _grounds(
     ``top``: up to which slip their laws are looked at, m/s.
     """
     grounds = [
-        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_GROUND
+        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_FLOOR_MAP
         for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work
@@ -237,7 +237,7 @@ def _of_one_law(
         own is None and not puck.path for own, puck in zip(tables, pucks, strict=True)
     ])  # fmt: skip
     hangs = np.array([_may_hang(scene, puck) for puck in pucks])
-    floor_map = NO_GROUND
+    floor_map = NO_FLOOR_MAP
     if (summed | hangs).any():
         floor_map = _grounds(scene, pucks, summed | hangs, top)
     each = {id(own): own for own in tables if own is not None}

@@ -102,7 +102,7 @@ def _horizon(engine: Engine, t: float, size: int, place: Workplace) -> tuple[flo
         pulled = pulled or disc[PULL_X] != 0.0 or disc[PULL_Y] != 0.0 or disc[TWIST] != 0.0
         moves = moves or disc[HOLD_VX] != 0.0 or disc[HOLD_VY] != 0.0
         jump = min(jump, _next_jump(engine, i, t))
-        over = over or engine.regions.astride[int(disc[REGION])]
+        over = over or engine.regions.summed[int(disc[REGION])]
         if engine.drives[i, 0] < engine.drives[i, 1]:  # what drives may turn where its piece ends
             row = place.group.films[i]
             moves = moves or row[DURATION] >= FOR_EVER  # by hand, until it turns

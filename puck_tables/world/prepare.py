@@ -207,7 +207,7 @@ def _fill_disc(
     if puck.path:
         return
     inertia = puck.mass * puck.inertia_radius**2
-    disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / puck.mass, 1.0 / inertia
+    disc[layout.INVERSE_MASS], disc[layout.INVERSE_INERTIA] = 1.0 / puck.mass, 1.0 / inertia
     disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, puck, inertia)
     disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(puck)
     disc[layout.DRAG : layout.LIES] = drags_of(scene.drag, scene.lateral, puck.mass, inertia)
@@ -332,7 +332,7 @@ def _strongest(engine: Engine) -> float:
     of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
     forces = engine.forcing[:, :FORCED]
     rows, discs = np.vstack([np.zeros((len(counts), FORCED)), forces]), discs[of]
-    light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
+    light, turns = discs[:, layout.INVERSE_MASS], discs[:, layout.INVERSE_INERTIA]
     ax = discs[:, layout.PULL_X] + light * rows[:, 1]
     ay = discs[:, layout.PULL_Y] + light * rows[:, 2]
     rim = discs[:, layout.RADIUS] * (discs[:, layout.TWIST] + turns * rows[:, 3])

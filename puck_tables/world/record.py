@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.scene.equations import (
     FIRST,
-    GIVEN,
+    FORCE_WORK,
     LAMBDA,
     ROW,
     SIZE,
@@ -25,7 +25,7 @@ from puck_tables.scene.equations import (
     to_laboratory,
 )
 from puck_tables.scene.friction import SPIN, X, Y
-from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Phase
+from puck_tables.scene.ingredients import FREE, NO_DIRECTION, SLIDES, Phase
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.parts import Floor
 from puck_tables.world import engine_state as g
@@ -33,7 +33,7 @@ from puck_tables.world.engine_state import (
     IMPACT,
     N_EVENTS,
     N_HISTORY,
-    N_WORKS,
+    N_WORK_ROWS,
     NORMAL_X,
     NORMAL_Y,
     PARTNER,
@@ -50,8 +50,8 @@ from puck_tables.world.layout import (
     DECEL,
     HOLD,
     INTEGRATED,
+    INVERSE_MASS,
     KIND,
-    LIGHTNESS,
     NO_CUSHION,
     RADIUS,
     normal_to,
@@ -104,7 +104,7 @@ def _fill_reactions(
         for n in range(times.size):
             patience(1)
             for k in range(SIZE):
-                y[k] = states[n, i, k] if k < GIVEN else 0.0
+                y[k] = states[n, i, k] if k < FORCE_WORK else 0.0
             lie_at(engine, i, y[X], y[Y])
             to_laboratory(model.surface, y, -1.0)
             slips = slip_speed(engine.discs[i, RADIUS], y) > at_rest_below(engine)
@@ -115,7 +115,7 @@ def _fill_reactions(
                 continue
             rows = rows_passed(drive, 0, len(drive), times[n])
             friction = friction_under_disc(engine.regions, engine.discs, i)
-            phase = Phase(model, friction, rows, SLIDES, NO_WAY, 0.0)
+            phase = Phase(model, friction, rows, SLIDES, NO_DIRECTION, 0.0)
             rates(phase, times[n], y, work, FIRST)
             out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
 
@@ -151,9 +151,9 @@ def pushed_back(engine: Engine, i: int, since: Reported) -> tuple[FloatArray, Re
     """
     now, counts = float(engine.clock[0]), engine.counts
     impulse = _of_impacts(engine.events[since.events : counts[N_EVENTS]], i)
-    still_open = int(counts[N_WORKS])
+    still_open = int(counts[N_WORK_ROWS])
     ends: dict[int, float] = {}
-    for n in range(since.open, int(counts[N_WORKS])):
+    for n in range(since.open, int(counts[N_WORK_ROWS])):
         row = engine.work_rows[n]
         segment = int(row[SEGMENT])
         if segment not in ends:
@@ -168,7 +168,7 @@ def pushed_back(engine: Engine, i: int, since: Reported) -> tuple[FloatArray, Re
         if n < since.work_rows:
             total -= _worked(row, min(since.time, end))
         impulse += total if driver == i else math.nan
-    return impulse, Reported(now, int(counts[N_EVENTS]), int(counts[N_WORKS]), still_open)
+    return impulse, Reported(now, int(counts[N_EVENTS]), int(counts[N_WORK_ROWS]), still_open)
 
 
 def _of_impacts(events: FloatArray, i: int) -> FloatArray:
@@ -224,7 +224,7 @@ def _described(engine: g.Engine) -> list[Rest]:
         there = states_on(engine, unsure, middles)
         moves[unsure] = slips_over(engine, discs[unsure], there, middles) > STUCK * engine.scale[0]
     # none of what is driven, or what nothing can hold
-    held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
+    held = (rows[:, INVERSE_MASS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")
     intervals: list[tuple[int, float, str]] = []
     disc, rested = -1, True

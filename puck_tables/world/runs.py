@@ -72,8 +72,8 @@ class Runs(Work):
                 f"(such as {own} = '0:10:101')"
             )
         self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
-        self.names, self._found = BoardCase.names(scene), BoardCase.columns(scene)
-        self.columns: Mapping[str, tuple[int, ...]] = self._found
+        self.names, self._columns = BoardCase.names(scene), BoardCase.columns(scene)
+        self.columns: Mapping[str, tuple[int, ...]] = self._columns
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole, self.files = tables_of(scene), files_of(scene)
         self._read = files_named(self._whole) if read is None else read
@@ -137,7 +137,7 @@ class Runs(Work):
         outer = {path: values.tolist() for path, values in numbers.items()
                  if path not in self._inner}  # fmt: skip
         keys = list(zip(*outer.values(), strict=True)) or [()] * count
-        columns: Columns = {name: np.empty((count, *one)) for name, one in self._found.items()}
+        columns: Columns = {name: np.empty((count, *one)) for name, one in self._columns.items()}
         columns[self.code] = np.empty(count, np.int8)
         begin = 0
         while begin < count:  # runs that differ in nothing but launches, together
@@ -169,7 +169,7 @@ class Runs(Work):
                 one = {path: values[i : i + 1] for path, values in numbers.items()}
                 self._together(fixed, one, parts, start + i, start + i + 1)
             return
-        for name in self._found:
+        for name in self._columns:
             parts[name][start:stop] = np.nan if end is None else ends[name]
         parts[self.code][start:stop] = REFUSED if end is None else end
 
@@ -274,7 +274,7 @@ class DrawnRuns(Runs):
         except InputError as error:
             raise InputError(f"samples: in the middle of what is drawn, {error}") from None
         super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))
-        self.columns = {**{plain_name(path): () for path in spreads}, **self._found}
+        self.columns = {**{plain_name(path): () for path in spreads}, **self._columns}
 
     def __reduce__(self) -> Any:
         return DrawnRuns, (

@@ -11,7 +11,7 @@ kinds
       v = v₀ e^{−γs}/(1 + w v₀ E),   path = ln(1 + w v₀ E)/w;
 
 - PATH is a path in pieces (:mod:`puck_tables.world.paths`): integrated, or given;
-- CARRIED rests on a turntable, and goes round with it.
+- RIDING rests on a turntable, and goes round with it.
 
 On a belt the first three are motions over the belt, and drift with it.
 """
@@ -41,7 +41,7 @@ from puck_tables.stopping.similarity_lookup import (
 from puck_tables.world.layout import DECEL, DELTA, DRAG, RADIUS, feels_floor, write_over
 from puck_tables.world.paths import on_piece, piece_at
 
-STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
+STILL, LOOKED_UP, DAMPED, PATH, GONE, RIDING = range(6)
 
 KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
 START = LAUNCH_COLUMNS + LAUNCH_ROWS  # s, when; behind what is known of the launch
@@ -88,7 +88,7 @@ def moves_until(kind: int, segment: FloatArray) -> float:
         return math.inf
     if kind in (LOOKED_UP, PATH):
         return segment[UNTIL]
-    return math.inf if kind in (DAMPED, CARRIED) else -math.inf
+    return math.inf if kind in (DAMPED, RIDING) else -math.inf
 
 
 @inner
@@ -118,7 +118,7 @@ def state_at(
         piece = piece_at(pieces, int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]), t)
         on_piece(pieces[piece], t, room)
         write_over(out, room[:6])
-    elif kind == CARRIED:
+    elif kind == RIDING:
         turning = segment[2]
         angle = turning * (t - segment[START])
         cosine, sine = math.cos(angle), math.sin(angle)
@@ -164,7 +164,7 @@ def start_segment(
         )  # fmt: skip
         segment[FASTEST] = math.hypot(sx, sy)
         segment[STRONGEST] = abs(turning) * segment[FASTEST]
-        return CARRIED
+        return RIDING
     segment[DRIFT_X], segment[DRIFT_Y] = sx, sy
     segment[FASTEST] = speed + math.hypot(sx, sy)
     if speed == 0.0 and spin == 0.0:
@@ -198,7 +198,7 @@ def corridor(
     x, y = segment[PLACE_X], segment[PLACE_Y]
     if drifts(segment):
         return x, y, x, y, segment[FASTEST] * (horizon - segment[START])
-    if kind == CARRIED:
+    if kind == RIDING:
         return segment[0], segment[1], segment[0], segment[1], segment[FASTEST] / abs(segment[2])
     if kind == LOOKED_UP:
         across, up = segment[KNOWN + STOP_X], segment[KNOWN + STOP_Y]

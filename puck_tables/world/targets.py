@@ -239,12 +239,12 @@ _ROUNDS = 12  # of steps of the search, which are halved where none helps
 class Odds(NamedTuple):
     """Chances of a launch as it was found, and of the best aim beside it.
 
-    ``found`` and ``best``: shares of the same ``count`` scattered runs, with 95 % intervals;
+    ``nominal`` and ``best``: shares of the same ``count`` scattered runs, with 95 % intervals;
     ``velocity`` (vx, vy) m/s and ``spin`` rad/s: what to aim at for the best.  ``failed``: runs
     that could not be followed to their end, which count as misses.
     """
 
-    found: Chance
+    nominal: Chance
     best: Chance
     velocity: tuple[float, float]
     spin: float
@@ -255,14 +255,14 @@ class Odds(NamedTuple):
         aim = f"{math.hypot(vx, vy):.6g} m/s, heading {degrees * math.atan2(vy, vx):.5g} deg"
         lost = f"\n{self.failed} runs could not be followed to their end: misses"
         return (
-            f"scattered so, the launch does it with a chance of {_words(self.found)}\n"
+            f"scattered so, the launch does it with a chance of {_words(self.nominal)}\n"
             f"the best aim found, {aim}, spin {self.spin:.5g} rad/s, with {_words(self.best)}"
             f"{lost if self.failed else ''}"
         )
 
     def summary(self) -> dict[str, Any]:
         """Chances and aim, ready for JSON."""
-        chances = {"found": self.found._asdict(), "best": self.best._asdict()}
+        chances = {"nominal": self.nominal._asdict(), "best": self.best._asdict()}
         return self._asdict() | chances
 
 

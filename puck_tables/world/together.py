@@ -21,12 +21,12 @@ from puck_tables.world import engine_state as g
 from puck_tables.world import stored
 from puck_tables.world.bench import (
     ALONE,
-    FOUND_COLUMNS,
     LACKS_PIECES,
     LED,
     LET_GO,
-    PACE,
+    REPORT_COLUMNS,
     ROWS,
+    SCALES,
     TO_DO,
     WAITS,
     Bench,
@@ -39,7 +39,7 @@ from puck_tables.world.by_hand import slips_of
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
-from puck_tables.world.layout import HOLD, LIGHTNESS
+from puck_tables.world.layout import HOLD, INVERSE_MASS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
 from puck_tables.world.segment_starts import room_for
@@ -109,7 +109,7 @@ class Together:
         time = np.zeros(count) if anew else self.time[some]
         target = np.where(self._at[some] == some, some + n, some)
         how, longest = np.full(count, TO_DO), np.zeros(count)
-        scales = self._store.numbers[source, PACE]
+        scales = self._store.numbers[source, SCALES]
         if what != LET_GO and not self._plain:
             how[:] = ALONE
         elif rows is not None and discs is not None:
@@ -156,7 +156,9 @@ class Together:
             faster = ~(slips <= scales[:, :1]).all(axis=1)
             if what == g.STRUCK:
                 faster &= ~np.isnan(rows[:, 0, [VX, -1]]).all(axis=1)
-            led = bool((own[:, LIGHTNESS] == 0.0).any()) or law_goes_to(engine.regions) < math.inf
+            led = (
+                bool((own[:, INVERSE_MASS] == 0.0).any()) or law_goes_to(engine.regions) < math.inf
+            )
             new = np.flatnonzero(faster | led)
             states = self._states(slots[new], time[new])[0][:, self._order]
             states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
@@ -227,9 +229,9 @@ class Together:
         if world._engine.floors is not self._first._engine.floors:
             apart[int(orders.target[k])] = world._engine
         passed = world._passings.rows
-        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), FOUND_COLUMNS))
+        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), REPORT_COLUMNS))
         used = stored.tell(
-            board, world._engine, first, bench._replace(found=passed), len(passed), out
+            board, world._engine, first, bench._replace(reports=passed), len(passed), out
         )
         orders.after[k], orders.how[k] = world.time, REACHED
         self._free.append(mine)
@@ -261,7 +263,7 @@ class Together:
         except IndexError:
             bench = self._bench(self._store.pieces.shape[1])
             rows = _ROWS + 2 * len(bench.engine.events)
-            return bench, np.empty((rows, FOUND_COLUMNS))
+            return bench, np.empty((rows, REPORT_COLUMNS))
 
     def _kinds(self, slots: Whole) -> Whole:
         """Of the segments of all discs of boards, (slots, discs)."""

@@ -15,9 +15,9 @@ from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event, number_of
 from puck_tables.world import engine_state as g
 from puck_tables.world.agreement import refuse_endless
-from puck_tables.world.bench import ALL_PUT, FOUND_COLUMNS, LED, LET_GO
+from puck_tables.world.bench import ALL_PUT, LED, LET_GO, REPORT_COLUMNS
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.layout import LIGHTNESS
+from puck_tables.world.layout import INVERSE_MASS
 from puck_tables.world.running import span_of
 from puck_tables.world.segment import GONE
 from puck_tables.world.together import Together, of_boards
@@ -100,7 +100,7 @@ class Worlds(Together):
         >>> [worlds.events[name].tolist() for name in ("board", "what", "partner")]
         [[0, 1], ['impact', 'impact'], ['puck 1', 'puck 1']]
         """
-        rows = np.concatenate([np.zeros((0, FOUND_COLUMNS)), *self._described])
+        rows = np.concatenate([np.zeros((0, REPORT_COLUMNS)), *self._described])
         obstacles, lines = self._first._obstacles, self.scene.lines
         late = rows[:, 4] < -len(obstacles)  # a line: sorted in as World does
         order = np.lexsort((-rows[:, 4] * late, rows[:, 3] * late, late, rows[:, 1] * bool(lines),
@@ -161,7 +161,7 @@ class Worlds(Together):
         [0.0, 0.0, 1.0]
         """
         i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
-        if self._first._engine.discs[i, LIGHTNESS] == 0.0:
+        if self._first._engine.discs[i, INVERSE_MASS] == 0.0:
             raise InputError(f"{self.names[self._order[i]]} is driven along its path")
         self._refuse_gone(i, some)
         self._put(g.STRUCK, i, some, self._rows(len(some), None, None, velocity, spin))
@@ -389,8 +389,8 @@ class Worlds(Together):
 
     def _each(self, name: str, values: Any, unit: str, count: int, *width: int) -> FloatArray:
         """Numbers for each board, or for all the same."""
-        given_values = finite_array(name, values, unit)
-        if given_values.shape not in (width, (count, *width)):
+        rows = finite_array(name, values, unit)
+        if rows.shape not in (width, (count, *width)):
             raise InputError(f"{name} must have the shape {width} or {(count, *width)}, in {unit}, "
-                             f"got {given_values.shape}")  # fmt: skip
-        return given_values
+                             f"got {rows.shape}")  # fmt: skip
+        return rows
