@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from puck_tables.kernels.patience import here
 
 QUARTER, HALF = 0.25 * math.pi, 0.5 * math.pi
 ROOT = Path(__file__).resolve().parent.parent
+# of workers, one a core: decompositions by several threads each take up to thirty times as long
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 type(here).at_once = True  # tests ask often; kernels as they are written have tests of their own

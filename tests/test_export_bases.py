@@ -40,11 +40,13 @@ def judge_of(puck: pt.Puck) -> Judge:
     return Judge(outlines, discs, lever, puck.gyration)
 
 
-def runner(language: str, puck: pt.Puck, folder: Path) -> Run:
+def runner(language: str, puck: pt.Puck, folder: Path, steps: int = 100_000) -> Run:
     make, program = RUNNERS[language]
     if shutil.which(program) is None:
         pytest.skip(f"there is no {program} here")
-    return make(pt.export_source(language, "wrench", puck=puck).text, folder)
+    text = pt.export_source(language, "wrench", puck=puck).text
+    assert text.count("part < 100000") == 1
+    return make(text.replace("part < 100000", f"part < {steps}"), folder)
 
 
 @pytest.mark.parametrize("language", RUNNERS)
@@ -100,7 +102,7 @@ def test_steps_lead_to_the_stop_of_the_judge(name: str, language: str, tmp_path:
 
 @pytest.mark.parametrize("language", RUNNERS)
 def test_what_is_out_of_range_is_refused(language: str, tmp_path: Path) -> None:
-    run = runner(language, PUCKS["box"], tmp_path)
+    run = runner(language, PUCKS["box"], tmp_path, steps=1000)
     bad = np.array([
         [0.0, 0.0, 0.0, 1.0], [np.nan, 0, 0, 0], [1, np.inf, 0, 0], [1, 0, 0, np.nan],
     ])  # fmt: skip

@@ -63,10 +63,10 @@ def test_size_of_a_law(law: str):
 
 def test_heights_beyond_full_contact_are_refused():
     names: dict[str, object] = {}
-    exec(text_under("annulus:0.8", "python", ALL, 1e-4), names)
+    exec(text_under("hertz", "python", "stop", 1e-4), names)
     out = [0.0] * 5
-    assert names["stop"](1.0, 0.0, 5.0, 1.64, 1.0, 1.0, out) == 0  # type: ignore[operator]
-    assert names["stop"](1.0, 0.0, 5.0, 1.65, 1.0, 1.0, out) == 1  # type: ignore[operator]
+    assert names["stop"](1.0, 0.0, 5.0, 0.8, 1.0, 1.0, out) == 0  # type: ignore[operator]
+    assert names["stop"](1.0, 0.0, 5.0, 0.81, 1.0, 1.0, out) == 1  # type: ignore[operator]
     assert np.isnan(out).all()
 
 

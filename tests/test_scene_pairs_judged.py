@@ -27,6 +27,7 @@ def test_the_judge_sums_rebounds_on_a_slope():
     assert abs(found["events"][found["events"][:, 1] == LEANS][0, 0] - rests) <= 1e-8
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("restitution", [0.3, 0.9])
 def test_the_judge_lets_a_leaning_rim_feel_friction(restitution):
     mass, radius, mu, push = 2.0, 0.1, 0.2, 3.0

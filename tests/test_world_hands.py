@@ -387,6 +387,19 @@ def test_a_push_too_weak_leaves_it_lying_and_one_in_a_row_moves_all():
     assert missed(world) < 1e-8
 
 
+@pytest.mark.parametrize("before", [0.02, 0.12])
+def test_nobody_meets_a_puck_that_is_taken_away(before: float):
+    """On its way to it, or as it pushes it."""
+    pucks = [puck_at(0.0, 0.0, (1.0, 0.0), restitution=0.0),
+             puck_at(0.11, 0.0, restitution=0.0, friction=0.4)]  # fmt: skip
+    world = pt.Scene(pucks=pucks).world()
+    world.advance(before)
+    x, speed = world.state()[0, [0, 3]]
+    world.remove(1)
+    assert world.advance(math.inf) == [] and world.in_play.tolist() == [True, False]
+    assert world.state()[0, 0] == pytest.approx(x + speed**2 / (2 * 0.2 * G), abs=1e-9)
+
+
 def test_what_leant_on_a_puck_that_is_taken_away_slides_on():
     wall = pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)
     pucks = [puck_at(x, 0.0, friction=0.15, restitution=0.5, height=0.0) for x in (0.0, 0.2)]

@@ -277,11 +277,11 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
         if room.shares[i] in (_PUT, _MOVED):
             if what == REMOVED:
                 leave(engine, i, t, REMOVED, i, room)
-                room.shares[i] = _KEPT
             else:
                 _put_down(engine, i, what, t, room.shares[i] == _MOVED, room)
-    for i in range(count):
-        room.marks[i] = STALE if room.shares[i] != _KEPT else CURRENT
+    for i in range(count):  # who has left play touches nobody
+        touches = room.shares[i] != _KEPT and engine.kinds[i] != GONE
+        room.marks[i] = STALE if touches else CURRENT
     contacts = find_touching(engine, t, room)
     if contacts < 0:
         return CROWDED
