@@ -458,3 +458,16 @@ def test_one_that_is_put_where_it_was_taken_out_is_back():
     assert not worlds.in_play[:, 0].any()
     worlds.place(0, (0.0, 0.0), 0.0, (0.0, 0.0), 0.0, boards=[1])
     assert worlds.in_play[:, 0].tolist() == [False, True]
+
+
+def test_who_goes_on_elsewhere_as_it_went_has_the_bits_of_a_world():
+    """A rounding of its slip is no faster slip, from which steps would be others."""
+    for v in np.random.default_rng(1).normal(size=(8, 2)):
+        one = pt.Puck(0.1, friction=0.1, launch=pt.Launch(v, spin=30.0 * v[0]))
+        scene = pt.Scene(pucks=[one], floor=pt.Floor(slope=0.9), walls=cushions(9.0), time=5.0)
+        world, worlds = scene.world(), pt.Worlds(scene, 1)
+        for board in (world, worlds):
+            board.advance(0.05)
+            board.place(0, (0.4, 0.4))
+            board.advance(0.1)
+        assert np.array_equal(world.state(), worlds.state()[0])

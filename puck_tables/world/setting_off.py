@@ -62,7 +62,7 @@ from puck_tables.world.touching import (
 ) = range(10)  # fmt: skip
 
 OVERLAP = 1e-11  # of the radius: what pushes overlaps by less, and may be put where it was
-_SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
+SURELY = 1.0 - 1e-12  # of the fastest slip yet: below it rounding makes none faster
 _KEPT, _PUT, _MOVED, _MATE = range(4)  # what is done to a disc: nothing, a state, also a place
 _ROUNDED = 4e-16  # of the speeds of both: less cannot be taken out
 _ROUNDS = 8  # of contacts that approach as others are stopped, at most
@@ -232,7 +232,7 @@ def _is_unseen(engine: Engine, i: int, swift: bool, state: FloatArray) -> bool:
     if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
         return True
     slip = math.hypot(math.hypot(state[VX], state[VY]), disc[RADIUS] * state[SPIN])
-    return swift and not slip <= _SURELY * engine.scale[0]
+    return swift and not slip <= SURELY * engine.scale[0]
 
 
 @inner

@@ -43,7 +43,7 @@ from puck_tables.world.layout import HOLD, INVERSE_MASS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
 from puck_tables.world.segment_starts import room_for
-from puck_tables.world.setting_off import REACHED
+from puck_tables.world.setting_off import REACHED, SURELY
 from puck_tables.world.world import World
 
 _PARTS = 16  # in which threads take boards at least
@@ -147,24 +147,23 @@ class Together:
             return
         engine = self._first._engine
         own = engine.discs[discs]
-        slips = slips_of(own, rows)
         if what == LED:
             fastest = np.hypot(rows[:, 0, VX], rows[:, 0, VY])
             new = np.flatnonzero(fastest > scales[:, 0])
             fastest = fastest[new]
         else:
-            faster = ~(slips <= scales[:, :1]).all(axis=1)
-            if what == g.STRUCK:
-                faster &= ~np.isnan(rows[:, 0, [VX, -1]]).all(axis=1)
-            led = (
-                bool((own[:, INVERSE_MASS] == 0.0).any()) or law_goes_to(engine.regions) < math.inf
+            limited = (own[:, INVERSE_MASS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
+            new = np.flatnonzero(
+                ~(slips_of(own, rows) <= scales[:, :1]).all(axis=1) | limited.any()
             )
-            new = np.flatnonzero(faster | led)
-            states = self._states(slots[new], time[new])[0][:, self._order]
+            now = self._states(slots[new], time[new])[0][:, self._order]
+            states = now.copy()
             states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
-            if not led:
-                faster = (slips_of(own, states[:, discs]) > scales[new, :1]).any(axis=1)
-                new, states = new[faster], states[faster]
+            changed, slips = (states != now)[:, discs], slips_of(own, states[:, discs])
+            swift = changed[..., VX:].any(axis=2) & (slips > SURELY * scales[new, :1])
+            unseen = (limited & (changed.any(axis=2) | (what == g.STRUCK)) | swift).any(axis=1)
+            unseen &= (slips > scales[new, :1]).any(axis=1) | limited.any()
+            new, states = new[unseen], states[unseen]
             fastest = slips_of(engine.discs, states).max(axis=1, initial=0.0)
         if new.size:
             scales[new] = np.maximum(scales[new], scales_of(engine, fastest))
