@@ -152,17 +152,15 @@ class Together:
             new = np.flatnonzero(fastest > scales[:, 0])
             fastest = fastest[new]
         else:
-            limited = (own[:, INVERSE_MASS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
-            new = np.flatnonzero(
-                ~(slips_of(own, rows) <= scales[:, :1]).all(axis=1) | limited.any()
-            )
+            known = (own[:, INVERSE_MASS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
+            new = np.flatnonzero(~(slips_of(own, rows) <= scales[:, :1]).all(axis=1) | known.any())
             now = self._states(slots[new], time[new])[0][:, self._order]
             states = now.copy()
             states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
             changed, slips = (states != now)[:, discs], slips_of(own, states[:, discs])
             swift = changed[..., VX:].any(axis=2) & (slips > SURELY * scales[new, :1])
-            unseen = (limited & (changed.any(axis=2) | (what == g.STRUCK)) | swift).any(axis=1)
-            unseen &= (slips > scales[new, :1]).any(axis=1) | limited.any()
+            unseen = (known & (changed.any(axis=2) | (what == g.STRUCK)) | swift).any(axis=1)
+            unseen &= (slips > scales[new, :1]).any(axis=1) | known.any()
             new, states = new[unseen], states[unseen]
             fastest = slips_of(engine.discs, states).max(axis=1, initial=0.0)
         if new.size:
