@@ -237,7 +237,7 @@ class Runs(Work):
         end = kept.pop(self.code)
         return self._ends(
             scene=self.scene, names=self.names, columns=kept, end=end, model=model,
-            explanation=explanation, told=parts, files=self.files,
+            explanation=explanation, endless=parts, files=self.files,
         )  # fmt: skip
 
     def _ends(self, **ends: Any) -> SceneEnds:
