@@ -13,13 +13,7 @@ from puck_tables.scene.floor_map import NO_FLOOR_MAP
 from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world import pressing, pushing
-from puck_tables.world.group import (
-    APART,
-    HELD,
-    Group,
-    Scales,
-    buffer_for,
-)
+from puck_tables.world.group import APART, HELD, Group, Scales, buffer_for
 from puck_tables.world.layout import (
     ARC,
     DISC_COLUMNS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
 from test_layers import modules
@@ -111,9 +111,7 @@ def dependent_docstrings(source: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("fault", [bare_constants, dependent_docstrings])
-def test_every_constant_has_its_reason_and_every_docstring_stands_alone(
-    fault: Callable[[str], Iterator[str]],
-):
+def test_every_constant_has_its_reason_and_every_docstring_stands_alone(fault):
     bad = {name: [*fault(path.read_text("utf-8"))] for name, path in modules().items()}
     assert not {name: faults for name, faults in bad.items() if faults}
 

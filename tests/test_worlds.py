@@ -261,11 +261,7 @@ def chain(scene: pt.Scene, seed: int, calls: int = 40, n: int = 5) -> Pair:
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("board", ["table", "drawn", "pieces"])
 def test_boards_are_worlds_of_their_own_whatever_is_done(board: str, seed: int):
-    scenes = {
-        "table": table,
-        "drawn": lambda: draw(seed, 5),
-        "pieces": lambda: draw_pucks(seed, 4),
-    }
+    scenes = {"table": table, "drawn": lambda: draw(seed, 5), "pieces": lambda: draw_pucks(seed, 4)}
     pair = chain(scenes[board](), seed)
     if board != "table":
         one = int(np.flatnonzero(pair.many.in_play.all(axis=0))[0])

@@ -12,14 +12,7 @@ import numpy as np
 
 from paper.claim import Claim, equal, farthest, more
 from paper.root import power
-from paper.runs import (
-    Simulate,
-    curvature_radius,
-    launch,
-    simulate,
-    slip_ratio,
-    time_left,
-)
+from paper.runs import Simulate, curvature_radius, launch, simulate, slip_ratio, time_left
 from puck_tables.contact.closed_form import Resultants, by_closed_form
 from puck_tables.motion.limits import approach_exponent, curvature_slope, limit_angle
 from puck_tables.trajectory import Trajectory

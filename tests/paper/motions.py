@@ -9,14 +9,7 @@ import numpy as np
 from paper.claim import Claim, equal, farthest, less, more
 from paper.friction import decline, excess
 from paper.root import power
-from paper.runs import (
-    Simulate,
-    launch,
-    simulate,
-    slip_ratio,
-    time_left,
-    velocity,
-)
+from paper.runs import Simulate, launch, simulate, slip_ratio, time_left, velocity
 from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import by_closed_form
 from puck_tables.trajectory import Trajectory
@@ -160,9 +153,7 @@ def spin_keeps_its_sign(motions: list[Trajectory]) -> list[Claim]:
         float((np.sin(r.slip_angle[r.slip_speed > 0.0]) / np.sin(r.slip_angle[0])).min())
         for r in motions
     )
-    return [
-        more("result 1", "w keeps its sign (smallest sin phi(t)/sin phi(0))", 0.0, smallest),
-    ]
+    return [more("result 1", "w keeps its sign (smallest sin phi(t)/sin phi(0))", 0.0, smallest)]
 
 
 def symmetry(run: Simulate) -> list[Claim]:
