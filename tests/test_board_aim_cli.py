@@ -66,7 +66,7 @@ def test_odds_are_those_of_the_library(tmp_path: Path, monkeypatch: pytest.Monke
     told = json.loads(aim(*asked, "--json").stdout)["odds"]
     found = board.aim((0.8, 0.0), spin=0.0)
     odds = found.odds(speed=0.05, heading=math.radians(1.0), within=0.1)
-    assert told["found"] == odds.found._asdict() and told["best"] == odds.best._asdict()
+    assert told["nominal"] == odds.nominal._asdict() and told["best"] == odds.best._asdict()
     assert told["velocity"] == list(odds.velocity)
     words = aim(*asked).stdout.rstrip().splitlines()[-2:]
     assert words == str(odds).splitlines()

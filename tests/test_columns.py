@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 import puck_tables as pt
 from puck_tables._core.quantities import X, Y
 from puck_tables._core.read_columns import numbers_of
+from puck_tables.contact.law_moments import law_moments
 from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in
@@ -118,7 +119,6 @@ def test_times_one_a_line(heading: str, comma: bool, tmp_path: Path):
     assert_allclose(times_in(tmp_path / "t.txt"), times * (1e-3 if "ms" in heading else 1.0))
 
 
-@pytest.mark.thorough
 def test_a_law_of_millimetres_stops_where_one_of_metres_does(tmp_path: Path):
     """Through the door of scenes; a unit not read would make the puck stop elsewhere."""
     rng = np.random.default_rng(13)
@@ -308,3 +308,12 @@ def test_laws_are_equal_to_themselves_and_to_what_is_pickled(tmp_path: Path):
         again = pickle.loads(pickle.dumps(one))
         assert again == one and (type(one).__hash__ is None or hash(again) == hash(one))
         assert one != "a text"
+
+
+def test_the_last_piece_of_a_law_ends_where_the_law_does():
+    """A node of it was beyond, by rounding, of every tenth law: the scene was refused."""
+    rng = np.random.default_rng(15)
+    for top in rng.uniform(0.5, 5.0, 100):
+        law = pt.SpeedLaw([0.0, 0.4 * top, top], [0.3, 0.25, 0.2], kind="cubic")
+        ends, _, _ = law_moments(law, law.speeds)
+        assert ends[-1] == top

@@ -88,7 +88,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     regions = scene.world()._engine.regions
     from puck_tables.kernels.quadratic import section_ratios
 
-    alone = regions.cuts[~regions.astride]
+    alone = regions.limits[~regions.summed]
     for n, delta in enumerate(2 * np.array(strips["friction"]) * 0.09 / 0.04):
         for phi in np.linspace(0.01, 1.56, 41):
             k = min(math.tan(phi), 1.0 / math.tan(phi))

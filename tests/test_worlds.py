@@ -327,7 +327,7 @@ def test_more_than_a_bench_holds_is_played_alone(monkeypatch: pytest.MonkeyPatch
 
 
 def test_lines_passed_more_often_than_a_bench_notes(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(bench, "_FOUND", 1)
+    monkeypatch.setattr(bench, "_PASSINGS", 1)
     pair = Pair(table(), 3)
     assert pair.strike(1, np.arange(3), strikes(3), None)
     assert pair.advance(1.0)

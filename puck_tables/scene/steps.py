@@ -17,7 +17,7 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.steppers import DORMAND_PRINCE_8
 from puck_tables.scene.equations import (
     FIRST,
-    GIVEN,
+    FORCE_WORK,
     SIZE,
     by_blade,
     by_floor,
@@ -31,11 +31,11 @@ from puck_tables.scene.equations import (
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
-    CARRIED,
     FREE,
     PIVOT,
     RAIL,
     SLIDES,
+    STICKING,
     Body,
     Phase,
     Surface,
@@ -153,12 +153,12 @@ def follow_scales(scale: FloatArray, tolerance: float, body: Body, y: FloatArray
 
     Energies are known to a share of the largest.
     """
-    for i in range(GIVEN):
+    for i in range(FORCE_WORK):
         scale[i] = max(scale[i], _ULP / tolerance * abs(y[i]))
     largest = kinetic_energy(body, y)
-    for i in range(GIVEN, SIZE):
+    for i in range(FORCE_WORK, SIZE):
         largest = max(largest, abs(y[i]))
-    for i in range(GIVEN, SIZE):
+    for i in range(FORCE_WORK, SIZE):
         scale[i] = max(scale[i], largest)
 
 
@@ -237,7 +237,7 @@ def step(
     if own or implicit:
         rates(phase, t + h, new, work, STAGES - 1)
     model = phase.model
-    if phase.mode == CARRIED:
+    if phase.mode == STICKING:
         new[VX] = new[VY] = new[SPIN] = 0.0
         moves = model.surface.spin != 0.0 or model.surface.changes != 0.0
         if not (moves or is_over_belts(phase.friction)):
