@@ -138,11 +138,11 @@ def _aim_in_scene(
     from puck_tables.world.scene import Scene
 
     with progress("searches") as show:
-        found = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
-    out.deliver(found, empty=not len(found))
-    odds = found.odds(within=near, **scatter) if scatter and len(found) else None
-    told = None if odds is None else lambda one: {**one.summary(), "odds": odds.summary()}
-    out.report(found, "" if chosen else choice.note, told)
+        aimed = Scene.from_tables(tables, chosen.name).aim(**wishes, progress=show)
+    out.deliver(aimed, empty=not len(aimed))
+    odds = aimed.odds(within=near, **scatter) if scatter and len(aimed) else None
+    summary = None if odds is None else lambda one: {**one.summary(), "odds": odds.summary()}
+    out.report(aimed, "" if chosen else choice.note, summary)
     if odds is not None and not out.as_json:
         click.echo(f"\n{odds}")
 

@@ -108,8 +108,8 @@ def _held(texts: tuple[str, ...], option: str) -> dict[str, Any]:
 
 def _pairs(texts: tuple[str, ...], option: str) -> dict[str, list[Any]]:
     """NAME=NUMBER:NUMBER, several times."""
-    given = named(texts, option).items()
-    return {name: parted(text, ":", f"{option} {name}") for name, text in given}
+    pairs = named(texts, option).items()
+    return {name: parted(text, ":", f"{option} {name}") for name, text in pairs}
 
 
 def _noise(text: str, option: str) -> list[Any]:

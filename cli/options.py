@@ -257,8 +257,8 @@ class Outputs:
         if self.explain:
             say(result.explain(), err=True)
         if self.as_json:
-            told = result.summary() if summary is None else summary(result)
-            click.echo(json.dumps(told, allow_nan=False))
+            summed_up = result.summary() if summary is None else summary(result)
+            click.echo(json.dumps(summed_up, allow_nan=False))
         else:
             say(str(result))
             if remark:

@@ -11,7 +11,7 @@ from pathlib import Path
 import click
 
 Progress = Callable[[int, int], None]
-QUIET_TIME, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
+SILENCE, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 
 def printable(text: str) -> str:
@@ -47,7 +47,7 @@ def progress(label: str, begin: bool = False) -> Iterator[Progress]:
         with click.progressbar(length=1000, label=label, file=sys.stderr, show_pos=False) as bar:
             yield lambda done, total: bar.update(1000 * done // total - bar.pos)
     else:
-        due = time.monotonic() + QUIET_TIME
+        due = time.monotonic() + SILENCE
         if begin:
             click.echo(label, err=True)
 

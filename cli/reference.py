@@ -254,10 +254,10 @@ def _export_board(
     tables = scene_tables(ctx, chosen, ("language", "target"))
     assert out.output is not None
     name = re.sub(r"\W", "_", out.output.stem, flags=re.ASCII)
-    beside = companion_path(out.output, language, name)
-    out.prepare(*chosen.reads(tables), others=(beside,), saved=False)
+    companion = companion_path(out.output, language, name)
+    out.prepare(*chosen.reads(tables), others=(companion,), saved=False)
     scene = Scene.from_tables(tables, chosen.name)
     source = export_board(scene, language, target=target, name=name)
     click.echo(repr(source), err=True)
     out.deliver(source)
-    note(beside)
+    note(companion)

@@ -48,13 +48,13 @@ def chosen_spreads(
     """
     from puck_tables.bulk.spreads import spread_named
 
-    found: dict[str, Spread] = {}
+    chosen: dict[str, Spread] = {}
     for name, text in named(spreads, "--spread", "NAME=SPREAD, like w0=normal:5:0.2").items():
         if names is not None and name not in names:
             raise InputError(f"--spread {name} does not scatter: give {', '.join(names)}")
         argument = name if names is None else names[name]
-        found[argument] = spread_named(text, unit_of(argument))
-    return found
+        chosen[argument] = spread_named(text, unit_of(argument))
+    return chosen
 
 
 def samples_checked(
@@ -66,8 +66,8 @@ def samples_checked(
 
     if random is None:
         alone = {"--seed": seed is not None, "--spread": spreads, "--inside": regions}
-        for name, is_given in alone.items():
-            if is_given:
+        for name, is_set in alone.items():
+            if is_set:
                 raise InputError(f"{name} is for samples: give --random COUNT too")
         return []
     if not spreads:

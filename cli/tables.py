@@ -130,7 +130,7 @@ def build_tables(
         raise InputError(f"{path}: a table is an HDF5 file: give a name that ends in .h5")
     replace(out, output=path).prepare(speed_law, pressure, saved=False)
     options = {"--accuracy": accuracy, "--cells": cells}
-    given = [f"{name} {value}" for name, value in options.items() if value is not None]
+    chosen = [f"{name} {value}" for name, value in options.items() if value is not None]
     grid: dict[str, Any] = {} if cells is None else {"cells": cells}
     if speed_law is not None and pressure is not None:
         grid["pressure"] = pressure
@@ -138,7 +138,7 @@ def build_tables(
         from puck_tables.table.table import Table
 
         table = Table.build(of, accuracy, progress=show, **grid)
-        saved = table.save(path, out.overwrite, " ".join(["puck build-tables", *words, *given]))
+        saved = table.save(path, out.overwrite, " ".join(["puck build-tables", *words, *chosen]))
     note(path)
     say(str(saved))
 

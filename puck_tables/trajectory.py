@@ -136,14 +136,14 @@ class Trajectory(TimedResult):
         [1.590682, 0.0]
         """
         moments = checked_times(times)
-        found: dict[str, Any] = {}
+        columns: dict[str, Any] = {}
         if isinstance(self.motion, BaseSlide):
-            found |= _slid(self.motion, moments)
+            columns |= _slid(self.motion, moments)
         else:
             decel, radius = self.puck.decel, self.puck.radius
             frame = frame_of(self.launch_velocity, self.launch_spin, decel, radius)
-            found |= _integrated(self.motion, frame, moments, self.stop_time)
-        return replace(self, time=moments, **found)
+            columns |= _integrated(self.motion, frame, moments, self.stop_time)
+        return replace(self, time=moments, **columns)
 
     @property
     def vx(self) -> FloatArray:
@@ -304,9 +304,9 @@ def _integrated(
     run: MotionRun, frame: Frame, moments: FloatArray, stop_time: float
 ) -> dict[str, FloatArray]:
     """States of a motion in natural units as the columns of a trajectory."""
-    q, natural = run.states(frame.unit_times(moments, stop_time))
-    x, y, turn, orientation, speed, spin = frame.states(q, natural)
-    phi = np.arctan(np.exp(np.minimum(natural[:, U], _LARGEST_U)))
+    q, unit_states = run.states(frame.unit_times(moments, stop_time))
+    x, y, turn, orientation, speed, spin = frame.states(q, unit_states)
+    phi = np.arctan(np.exp(np.minimum(unit_states[:, U], _LARGEST_U)))
     slip_angle = np.where(q > 0.0, frame.side * phi, 0.0) + 0.0
     return {
         "x": x, "y": y, "heading": frame.heading + turn, "orientation": orientation,
@@ -321,9 +321,9 @@ def _looked_up(
     from puck_tables.stopping.states import states
 
     till_rest = np.where(moments < stop_time, moments, 2.0 * stop_time)
-    found = states(launch, spin, till_rest, delta=puck.delta, decel=puck.decel, radius=puck.radius)
+    rows = states(launch, spin, till_rest, delta=puck.delta, decel=puck.decel, radius=puck.radius)
     names = ("x", "y", "heading", "orientation", "speed", "spin", "slip_speed", "slip_angle")
-    return {name: getattr(found, name) for name in names}
+    return {name: getattr(rows, name) for name in names}
 
 
 def _check_frames(frames: int | None, times: npt.ArrayLike | None) -> None:

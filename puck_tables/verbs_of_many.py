@@ -111,13 +111,13 @@ class VerbsOfMany(VerbsOfFriction):
         from puck_tables.bulk.finish import Doing
         from puck_tables.stopping.stop_sweep import sweep
 
-        given = {
+        axes = {
             "spin": spin, "speed": speed, "velocity": velocity, "heading": heading,
             "radius": radius, "height": height, "friction": friction, "gravity": gravity,
             "delta": delta, "decel": decel, "gyration": gyration, "pressure": pressure,
         }  # fmt: skip
         by, how = (tol, method, table), Doing(threads, chunk, progress, store, cluster, overwrite)
-        return cast("StopMap", sweep(self, given, launches, by, how))
+        return cast("StopMap", sweep(self, axes, launches, by, how))
 
     def sample(
         self,

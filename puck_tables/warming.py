@@ -100,7 +100,7 @@ def warm_up() -> None:
     line on stderr.
     """
     with compiled_at_once():
-        for number, (what, ask) in enumerate(_PARTS, 1):
+        for number, (what, part) in enumerate(_PARTS, 1):
             if sys.stderr is not None:
                 sys.stderr.write(f"warming up, {number} of {len(_PARTS)}: {what}\n")
-            ask()
+            part()

@@ -9,17 +9,11 @@ import numpy as np
 from puck_tables.kernels.compile import kernel
 from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW
-from puck_tables.scene.floor_map import NO_GROUND
+from puck_tables.scene.floor_map import NO_FLOOR_MAP
 from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world import pressing, pushing
-from puck_tables.world.group import (
-    APART,
-    HELD,
-    Group,
-    Scales,
-    buffer_for,
-)
+from puck_tables.world.group import APART, HELD, Group, Scales, buffer_for
 from puck_tables.world.layout import (
     ARC,
     DISC_COLUMNS,
@@ -87,7 +81,7 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         discs, padded(obstacles),
         Regions(
             mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW, np.zeros(len(discs), np.bool_),
-            NO_GROUND, np.zeros((len(discs), 2), np.int64),
+            NO_FLOOR_MAP, np.zeros((len(discs), 2), np.int64),
         ),
         Surface(*[0.0] * 9, 1.0), np.zeros(1), np.vstack(rows), reels,
         np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),

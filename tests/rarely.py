@@ -8,6 +8,14 @@ from typing import Any
 import pytest
 
 
+def thorough(*case: Any) -> Any:
+    return pytest.param(*case, marks=pytest.mark.thorough)
+
+
+def nightly(*case: Any) -> Any:
+    return pytest.param(*case, marks=pytest.mark.nightly)
+
+
 def few(count: int, cases: Iterable[Any]) -> list[Any]:
     """The first ``count`` cases for every run, the others for the nightly; tuples are spread."""
     return [

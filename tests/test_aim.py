@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from pucks import aim, simulate
 from reference import states
 
@@ -152,7 +151,7 @@ def test_bad_aims(arguments: tuple, options: dict, words: str):
 
 
 def run(*arguments: str):
-    return CliRunner().invoke(main, ["aim", *arguments])
+    return invoke("aim", *arguments)
 
 
 def test_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

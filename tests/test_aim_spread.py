@@ -62,7 +62,7 @@ def test_it_agrees_with_the_odds_of_a_board():
     off = np.random.default_rng(1).multivariate_normal((0.0, 0.0), covariance, 200_000)
     near = (np.hypot(*off.T) <= within).mean()
     assert 0.2 < near < 0.9
-    assert odds.found.low - 0.02 < near < odds.found.high + 0.02
+    assert odds.nominal.low - 0.02 < near < odds.nominal.high + 0.02
 
 
 def test_of_many_targets_and_of_none():

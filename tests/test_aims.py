@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from reference import states
 
 from puck_tables import Puck
@@ -123,7 +122,7 @@ def test_verbs(tmp_path: Path):
 
 
 def run(*arguments: str):
-    return CliRunner().invoke(main, ["aim", *arguments])
+    return invoke("aim", *arguments)
 
 
 def test_a_file_of_targets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

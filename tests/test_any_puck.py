@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
 from any_puck import stops_by_truth
 from pucks import simulate
+from rarely import nightly, thorough
 
 from puck_tables import law_of
 from puck_tables.contact import loaded_share, one_sided_resultants
@@ -50,19 +52,12 @@ def starts(law: str, delta: float, gyration: float, rng: np.random.Generator) ->
     return np.array([-12.0, 9.0, *near, *rng.uniform(-3.0, 3.0, 2)])
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("puck", [PUCKS[2], PUCKS[6]])
-def test_stops_by_truth_friction(puck: tuple[str, float, float]):
-    judged(puck, (1e-5, 1e-9))
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("puck", PUCKS)
-def test_stops_by_truth_friction_of_all_pucks(puck: tuple[str, float, float]):
-    judged(puck, (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10))
-
-
-def judged(puck: tuple[str, float, float], tolerances: tuple[float, ...]) -> None:
+@pytest.mark.parametrize(
+    ("puck", "tolerances"),
+    [*(thorough(PUCKS[n], (1e-5, 1e-9)) for n in (2, 6)),
+     *(nightly(puck, 10.0 ** -np.arange(3.0, 11.0)) for puck in PUCKS)],
+)  # fmt: skip
+def test_stops_by_truth_friction(puck: tuple[str, float, float], tolerances: Iterable[float]):
     law, delta, gyration = puck
     u = starts(*puck, np.random.default_rng(4))
     truth = stops_by_truth(*puck, u)

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import Puck
 from puck_tables.errors import InputError
@@ -97,7 +96,7 @@ def test_what_cannot_range_is_refused(given: dict[str, Any], said: str):
 
 
 def invoked(*words: str) -> Any:
-    return CliRunner().invoke(main, ["sweep", *words])
+    return invoke("sweep", *words)
 
 
 def test_the_command_line_ranges_them_too():

@@ -7,8 +7,7 @@ import math
 import mpmath
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -332,7 +331,7 @@ def test_bad_input_gets_a_sentence():
 
 
 def puck(*words: str):
-    return CliRunner().invoke(main, ["asperity", *words])
+    return invoke("asperity", *words)
 
 
 def test_the_command(tmp_path):

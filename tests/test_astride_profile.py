@@ -9,6 +9,7 @@ import numpy as np
 import pressure_judge
 import pytest
 from astride_judge import FloorMap
+from rarely import nightly
 from scipy.integrate import quad
 
 import puck_tables as pt
@@ -134,10 +135,7 @@ def test_a_centre_of_rotation_anywhere(tmp_path, floor):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("floor", ["strips", "round", "polygon"])
-@pytest.mark.parametrize(
-    "profile",
-    ["0 at some", "a thin ring", "rough", pytest.param("sixty rows", marks=pytest.mark.nightly)],
-)
+@pytest.mark.parametrize("profile", ["0 at some", "a thin ring", "rough", nightly("sixty rows")])
 def test_profiles(tmp_path, profile, floor):
     for slip in (BESIDE_A_BORDER, AT_THE_RIM):
         wrong = against_circles(tmp_path / "p.csv", PROFILES[profile], floor, slip)

@@ -11,9 +11,8 @@ from pathlib import Path
 
 import h5py
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from kinds_of_table import small
-from puck_tables.cli.main import main
 
 from puck_tables.table.file import sealed
 
@@ -91,7 +90,7 @@ READERS = [["info"], ["validate"], ["simulate", "--v0", "1,0", "--table"], ["swe
 
 
 def refused(arguments: list[str], codes: tuple[int, ...]) -> str:
-    result = CliRunner().invoke(main, arguments)
+    result = invoke(*arguments)
     assert result.exit_code in codes, result.output
     assert isinstance(result.exception, SystemExit)
     assert result.stdout == ""
@@ -142,7 +141,7 @@ def test_what_is_no_profile(shape: str, folder: Path):
 def test_what_is_no_scene(shape: str, reader: list[str], folder: Path):
     MADE[shape](Path("given.toml"))
     before = sorted(folder.iterdir())
-    result = CliRunner().invoke(main, [*reader, "given.toml"])
+    result = invoke(*reader, "given.toml")
     assert (result.exit_code, result.stdout) == (2, "")
     assert result.stderr.startswith("Error: ")  # then a line for each error in the scene
     assert sorted(folder.iterdir()) == before

@@ -34,9 +34,9 @@ def judge(base: Base, axes: Orthotropic, height: float, state: Any) -> np.ndarra
     node, weight = np.polynomial.legendre.leggauss(20)
     along, part = np.polynomial.legendre.leggauss(6)
     along, part = 0.5 * (1.0 + along), 0.5 * part
-    ends = np.linspace(0.0, 1.0, 401)
-    share = (ends[:-1, None] + 0.5 / 400 * (1.0 + node)).ravel()
-    on_side = np.tile(0.5 / 400 * weight, 400)
+    ends = np.linspace(0.0, 1.0, 101)
+    share = (ends[:-1, None] + 0.5 / 100 * (1.0 + node)).ravel()
+    on_side = np.tile(0.5 / 100 * weight, 100)
     points, areas = [], []
     for outline in base.outlines:
         corners = (np.array(outline) - base.middle) @ turn.T

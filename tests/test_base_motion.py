@@ -191,9 +191,7 @@ def test_feet_end_turning_about_one_of_them():
     ("sides", "height", "regime"),
     [((0.1, 0.1), 0.0, "together"), ((0.1, 0.1), 0.06, "cycle"), ((0.2, 0.1), 0.06, "together")],
 )
-def test_tall_and_nearly_symmetric_bodies_end_in_no_direction(
-    sides: tuple[float, float], height: float, regime: str
-):
+def test_tall_and_nearly_symmetric_bodies_end_in_no_direction(sides, height, regime):
     """By the judge: the direction of (v, kω), settles while Q falls by e^60, or not."""
     a, b = 0.5 * sides[0], 0.5 * sides[1]
     k = math.sqrt((sides[0] ** 2 + sides[1] ** 2) / 12.0)

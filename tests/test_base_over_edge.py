@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from judges import edge_judge
-from puck_tables.cli.main import main
+from rarely import thorough
 
 from puck_tables import (
     Base,
@@ -149,8 +149,8 @@ def slid(seed: int) -> tuple[list[np.ndarray], np.ndarray, Launch]:
 @pytest.mark.parametrize(
     ("grip", "seeds"),
     [
-        (None, (0, 3)), (WOOD, (0, 3)), pytest.param(ICE, (0, 3), marks=pytest.mark.thorough),
-        pytest.param(None, range(6), marks=pytest.mark.thorough),
+        (None, (0, 3)), (WOOD, (0, 3)), thorough(ICE, (0, 3)),
+        thorough(None, range(6)),
     ],
 )  # fmt: skip
 def test_motion_is_that_of_the_judge(grip: Any, seeds: Iterable[int]):
@@ -352,7 +352,7 @@ FLOORS = [
 
 @pytest.mark.parametrize("floor", FLOORS)
 @pytest.mark.parametrize("inner", [0.0, 0.7])
-@pytest.mark.parametrize("first", [0, pytest.param(2, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("first", [0, thorough(2)])
 def test_a_round_puck_is_the_disc_or_the_ring_of_its_radius(first: int, inner: float, floor: Floor):
     """It is looked up, or integrated, and comes over an edge, back from it, and over another."""
     law, hangs = f"annulus:{inner}" if inner else "uniform", 0
@@ -480,7 +480,7 @@ def test_the_command_line_says_so(tmp_path: Any):
         '[puck]\nbase = "box:0.2x0.1"\nfriction = 0.3\n[launch]\nvelocity = [1.0, 0.0]\n'
         "[[edge]]\npoint = [0.15, 0.0]\nnormal = [-1.0, 0.0]\n"
     )
-    said = CliRunner().invoke(main, ["simulate", "--scene", str(file)])
+    said = invoke("simulate", "--scene", file)
     assert said.exit_code == 0, said.output
     assert "over the edge after" in said.stdout
     assert "carries nothing" in said.stdout

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from base_judge import Judge
+from rarely import thorough
 
 from puck_tables import (
     Base,
@@ -146,9 +147,7 @@ def on_floor(seed: int) -> dict[str, Any]:
     return kinds[seed % len(kinds)]
 
 
-@pytest.mark.parametrize(
-    "seed", [0, 4, *(pytest.param(n, marks=pytest.mark.thorough) for n in (1, 2, 3, 5, 6, 7, 8))]
-)
+@pytest.mark.parametrize("seed", [0, 4, *map(thorough, (1, 2, 3, 5, 6, 7, 8))])
 def test_a_disc_by_its_base_is_the_round_puck(seed: int) -> None:
     height = 0.05 if seed % 2 else 0.0
     launch = Launch(velocity=(1.0, 0.2), spin=12.0)
@@ -474,7 +473,7 @@ def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing"),
+    "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing")
 }
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 
@@ -123,10 +122,10 @@ def test_files_words_and_bad_input(tmp_path: Path):
 def test_the_command(tmp_path: Path):
     picture = tmp_path / "surface.png"
     command = ["limit-surface", "--base", "box:20cmx10cm", "--friction", "0.3", "--points", "5"]
-    done = CliRunner().invoke(main, [*command, "--plot", str(picture)])
+    done = invoke(*command, "--plot", picture)
     assert done.exit_code == 0, done.stderr
     assert "quartic: off by" in done.stderr and picture.stat().st_size > 10_000
-    printed = CliRunner().invoke(main, command)
+    printed = invoke(*command)
     assert len(printed.stdout.splitlines()) == 1 + 5 * 9
-    both = CliRunner().invoke(main, [*command, "--radius", "0.1"])
+    both = invoke(*command, "--radius", "0.1")
     assert both.exit_code != 0 and "--base and --radius clash" in both.stderr

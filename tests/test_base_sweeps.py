@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
+from rarely import thorough
 
 from puck_tables import Floor, Launch, Normal, Puck, Scene, StribeckLaw, Uniform
 from puck_tables.errors import ContactError, InputError
@@ -82,7 +82,7 @@ def test_a_base_that_would_lift_is_refused():
 
 def asked(*arguments: str) -> tuple[int, str]:
     """Exit status and output of a command."""
-    found = CliRunner().invoke(main, arguments)
+    found = invoke(*arguments)
     return found.exit_code, found.output
 
 
@@ -145,13 +145,8 @@ def test_the_command_line_refuses(command: str, more: str, words: str):
     assert "Traceback" not in said
 
 
-@pytest.mark.parametrize(
-    "body",
-    [{"base": "box:0.2x0.1"}, pytest.param({"radius": 0.05}, marks=pytest.mark.thorough)],
-)
-def test_under_a_law_fast_launches_end_with_the_others_as_they_do_alone(
-    body: dict[str, Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("body", [{"base": "box:0.2x0.1"}, thorough({"radius": 0.05})])
+def test_under_a_law_fast_launches_end_with_the_others_as_they_do_alone(body, monkeypatch):
     """They need it farther than the first does: no run is made alone for that."""
     puck, floor = Puck(**body), Floor(law=StribeckLaw(0.35, 0.2, 0.1))
     velocity = np.array([[0.3, 0.1], [0.0, 0.02], [5.0, 0.0], [1.0, 1.0]])

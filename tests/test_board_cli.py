@@ -5,23 +5,17 @@ from __future__ import annotations
 import json
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 import xarray
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import Scene
 
 
-def puck(*arguments: str) -> Any:
-    return CliRunner().invoke(main, list(arguments))
-
-
 def test_a_report_says_first_what_happened() -> None:
-    said = puck("simulate", "--scene", "carrom-break").stdout
+    said = invoke("simulate", "--scene", "carrom-break").stdout
     run = Scene.load("carrom-break").simulate()
     first, second = said.splitlines()[:2]
     told = f"18 of 20 pucks come to rest after {run.end_time:.4g} s and {run.impacts} impacts."
@@ -36,13 +30,13 @@ def test_a_report_says_first_what_happened() -> None:
 
 
 def test_what_still_moves_and_what_is_driven_is_told() -> None:
-    said = puck("simulate", "--scene", "air-hockey-mallet").stdout
+    said = invoke("simulate", "--scene", "air-hockey-mallet").stdout
     assert said.startswith("Time is up after 3 s and 12 impacts: 1 puck still moves.")
     assert "None leaves play." in said and "  driven\n" in said and " m/s\n" in said
 
 
 def test_a_driven_mallet_comes_not_to_rest_and_goals_are_told() -> None:
-    said = puck("simulate", "--scene", "air-hockey-goals").stdout
+    said = invoke("simulate", "--scene", "air-hockey-goals").stdout
     assert said.startswith("No puck is left after 3 s and 2 impacts.\n1 goes over an edge (puck).")
     assert "\nline at 1.00893 s: puck and right goal, " in said
 
@@ -57,35 +51,35 @@ def test_what_nobody_can_know_is_said(tmp_path: Path) -> None:
                           ("[0,1]", "[0,-1]")):  # fmt: skip
         rows.append(f"[[wall]]\npoint = {point}\nnormal = {normal}\n")
     (tmp_path / "gas.toml").write_text("\n".join(rows))
-    said = puck("simulate", "--scene", str(tmp_path / "gas.toml"))
+    said = invoke("simulate", "--scene", tmp_path / "gas.toml")
     assert said.exit_code == 0, said.stderr
     assert "nobody can know the end: launches that differ by 1e-9 end up to" in said.stdout
 
 
 def test_nothing_moves() -> None:
     still = ("--set", "puck[0].launch.velocity=[0,0]")
-    said = puck("simulate", "--scene", "newtons-row", *still).stdout
+    said = invoke("simulate", "--scene", "newtons-row", *still).stdout
     assert said.splitlines()[:2] == [
         "6 pucks: nothing moves.", "Send one off: --set puck[0].launch.velocity=[1,0]"
     ]  # fmt: skip
 
 
 def test_numbers_of_a_puck_are_set_by_its_number() -> None:
-    changed = puck("simulate", "--scene", "newtons-row", "--set", "puck[0].launch.velocity=[2,0]",
+    changed = invoke("simulate", "--scene", "newtons-row", "--set", "puck[0].launch.velocity=[2,0]",
                    "--json")  # fmt: skip
     told = json.loads(changed.stdout)
     run = Scene.load("newtons-row").at({"puck[0].launch.velocity": [2.0, 0.0]}).simulate()
     assert told["end_time"] == run.end_time
     assert [one["x"] for one in told["pucks"]] == run.last["x"].tolist()
     assert [one["stop_time"] for one in told["pucks"]] == run.stop_times.tolist()
-    moving = json.loads(puck("simulate", "--scene", "air-table", "--json").stdout)
+    moving = json.loads(invoke("simulate", "--scene", "air-table", "--json").stdout)
     assert [one["stop_time"] for one in moving["pucks"]] == [None, None]
 
 
 @pytest.mark.parametrize("ending", ["h5", "csv", "jsonl", "parquet"])
 def test_states_go_into_files(tmp_path: Path, ending: str) -> None:
     file = tmp_path / f"run.{ending}"
-    ended = puck("simulate", "--scene", "air-table", "--times", "0:2:5", "-o", str(file))
+    ended = invoke("simulate", "--scene", "air-table", "--times", "0:2:5", "-o", file)
     assert ended.exit_code == 0, ended.stderr
     run = Scene.load("air-table").simulate([0.0, 0.5, 1.0, 1.5, 2.0])
     if ending == "h5":
@@ -103,12 +97,12 @@ def test_pictures_and_movies_are_written_and_told(tmp_path: Path) -> None:
     picture, movie = tmp_path / "run.png", tmp_path / "run.html"
     arguments = ("simulate", "--scene", "shuffleboard-two-stones", "--plot", str(picture),
                  "--movie", str(movie), "--explain")  # fmt: skip
-    ended = puck(*arguments)
+    ended = invoke(*arguments)
     assert ended.exit_code == 0 and f"wrote {movie}" in ended.stderr
     assert "2 pucks looked up from impact or border to the next" in ended.stderr
     assert picture.stat().st_size > 10_000 and movie.stat().st_size < 1_000_000
-    assert puck(*arguments).exit_code == 0  # they can be made again
-    one = puck("simulate", "--v0", "1,0", "--w0", "5", "--movie", str(tmp_path / "one.html"))
+    assert invoke(*arguments).exit_code == 0  # they can be made again
+    one = invoke("simulate", "--v0", "1,0", "--w0", "5", "--movie", tmp_path / "one.html")
     assert one.exit_code == 0 and (tmp_path / "one.html").exists()
 
 
@@ -128,11 +122,9 @@ def test_pictures_and_movies_are_written_and_told(tmp_path: Path) -> None:
         (("--plot", "a.png", "--movie", "a.png"), "one of .html, .gif, .mp4"),
     ],
 )
-def test_refusals_are_one_sentence_and_leave_nothing(
-    arguments: tuple[str, ...], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_refusals_are_one_sentence_and_leave_nothing(arguments, words, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    ended = puck("simulate", "--scene", "newtons-row", *arguments)
+    ended = invoke("simulate", "--scene", "newtons-row", *arguments)
     assert ended.exit_code in (1, 2) and words in ended.stderr
     assert "Traceback" not in ended.stderr and ended.stdout == ""
     assert not list(tmp_path.iterdir())
@@ -148,41 +140,39 @@ def test_refusals_are_one_sentence_and_leave_nothing(
         ("sweep", "height", "puck[{}].height"),
     ],
 )
-def test_a_number_of_the_only_puck_is_refused_with_what_to_write(
-    command: str, option: str, path: str
-) -> None:
+def test_a_number_of_the_only_puck_is_refused_with_what_to_write(command, option, path):
     """And what it says is what does it."""
     low, high = sorted(np.random.default_rng(19).uniform(0.001, 0.02, 2).round(4).tolist())
     value = f"{low!r}" if command == "simulate" else f"{low!r}:{high!r}:3"
     only = path.replace("puck[{}].launch", "launch").replace("puck[{}]", "puck")
     for given in ((f"--{option}", value), ("--set", f"{only}={value}")):
-        ended = puck(command, "--scene", "newtons-row", *given)
+        ended = invoke(command, "--scene", "newtons-row", *given)
         assert ended.exit_code == 2 and ended.stdout == ""
         assert "here each has its own" in ended.stderr and "and so on to puck[" in ended.stderr
         written = re.findall(r'--set "([^"]*)"', ended.stderr)
         assert written == [f"{path.format(0)}={value}"]
-        assert puck(command, "--scene", "newtons-row", "--set", *written).exit_code == 0
+        assert invoke(command, "--scene", "newtons-row", "--set", *written).exit_code == 0
 
 
 def test_a_sweep_of_several_pucks_says_where_each_ends() -> None:
-    ended = puck("sweep", "--scene", "newtons-row", "--set", "puck[0].mass=0.1:0.2:3")
+    ended = invoke("sweep", "--scene", "newtons-row", "--set", "puck[0].mass=0.1:0.2:3")
     assert ended.exit_code == 0
     assert len(ended.stdout.splitlines()) == 1 + 3 * 6
     assert "6 pucks" in ended.stderr and "3 at rest" in ended.stderr
 
 
 def test_check_says_how_pucks_would_be_moved() -> None:
-    assert "20 pucks looked up" in puck("scene", "check", "carrom-break").stdout
-    checked = puck("scene", "check", "air-hockey-mallet").stdout
+    assert "20 pucks looked up" in invoke("scene", "check", "carrom-break").stdout
+    checked = invoke("scene", "check", "air-hockey-mallet").stdout
     assert "1 puck driven along a path" in checked and "1 puck in closed form" in checked
-    assert "Carrom: the break" in puck("scene", "list").stdout
-    assert "[[puck]]" in puck("scene", "show", "crokinole").stdout
-    fields = puck("scene", "fields").stdout
+    assert "Carrom: the break" in invoke("scene", "list").stdout
+    assert "[[puck]]" in invoke("scene", "show", "crokinole").stdout
+    fields = invoke("scene", "fields").stdout
     assert "puck[0].launch.velocity" in fields and "a colour, '#rrggbb'" in fields
 
 
 def test_what_the_floor_and_the_air_took_is_told() -> None:
     more = ("--set", "drag.quadratic=0.01", "--set", "lateral.strength=0.1")
-    said = puck("simulate", "--scene", "curling-take-out", *more).stdout
+    said = invoke("simulate", "--scene", "curling-take-out", *more).stdout
     assert " J floor, " in said and " J drag, " in said
     assert said.count("empirical: no dry friction over the contact explains it") == 1

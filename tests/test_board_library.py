@@ -11,9 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
-from puck_tables.cli.main import main
 
 import puck_tables as pt
 
@@ -192,15 +191,7 @@ def test_two_boards_in_one_program_of_cpp(tmp_path: Path) -> None:
         '  std::printf("%d %s\\n", puck_scene_count(&crokinole_scene), puck_board_error());\n'
         "}\n"
     )
-    zig = (
-        sys.executable,
-        "-m",
-        "ziglang",
-        "c++",
-        "play.cpp",
-        "libcrokinole.a",
-        "libbumper_pool.a",
-    )
+    zig = (sys.executable, "-m", "ziglang", "c++", "play.cpp", "libcrokinole.a", "libbumper_pool.a")
     run(tmp_path, *zig, "-lm", "-o", "play")
     (said,) = run(tmp_path, "./play")
     count = len(pt.Scene.load("crokinole").world().names)
@@ -215,10 +206,10 @@ def test_the_program_of_the_page(tmp_path: Path) -> None:
     (program,) = re.findall(r"```c\n(.*?)```", page, re.DOTALL)
     (tmp_path / "play.c").write_text(program)
     asked = ["export", "--language", "c", "--scene", "carrom-break", "-o"]
-    done = CliRunner().invoke(main, [*asked, str(tmp_path / "carrom.h")])
+    done = invoke(*asked, tmp_path / "carrom.h")
     assert done.exit_code == 0, done.stderr
     assert f"wrote {tmp_path / 'libcarrom.a'}" in done.stderr
-    again = CliRunner().invoke(main, [*asked, str(tmp_path / "carrom.h")])
+    again = invoke(*asked, tmp_path / "carrom.h")
     assert again.exit_code == 1 and "exists already" in again.stderr
     zig = (sys.executable, "-m", "ziglang", "cc", "-Wall", "-Werror", "play.c", "libcarrom.a")
     run(tmp_path, *zig, "-lm", "-o", "play")

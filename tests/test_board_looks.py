@@ -245,9 +245,7 @@ def test_a_movie_replaces_nothing_unasked(runs: dict[str, Any], tmp_path: Path) 
     assert [path.name for path in tmp_path.iterdir()] == ["run.html"]
 
 
-def test_without_ffmpeg_an_mp4_is_refused(
-    runs: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_ffmpeg_an_mp4_is_refused(runs, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(MissingExtraError, match="ffmpeg"):
         runs["newtons-row"].movie(tmp_path / "run.mp4")

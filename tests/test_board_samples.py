@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from boards import draw, puck_at
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables import Normal, Scene, Uniform
@@ -159,7 +158,7 @@ def test_samples_of_a_board_on_the_command_line(tmp_path: Path, monkeypatch: pyt
              "--inside", "0.8,0,0.3"]  # fmt: skip
     truth = shot().sample(60, 7, SHOT)
     for more in (["-o", "s.csv"], ["-o", "s.h5", "--plot", "s.png"], ["-o", "s.zarr"]):
-        result = CliRunner().invoke(main, [*words, *more])
+        result = invoke(*words, *more)
         assert result.exit_code == 0, result.stderr
         assert result.stdout.rstrip() == truth.summary([(0.8, 0.0, 0.3)])
         assert "60 at rest" in result.stderr
@@ -168,5 +167,5 @@ def test_samples_of_a_board_on_the_command_line(tmp_path: Path, monkeypatch: pyt
     assert [row.split(",")[3] for row in rows[1:5]] == ["cue", "red", "cue", "red"]
     assert shot().sample(60, 7, SHOT, store="s.zarr").load() == truth
     for wrong, said in (("launch.spin", "pucks"), ("puck[7].launch.spin", "puck[7]")):
-        refused = CliRunner().invoke(main, [*words[:5], "--spread", f"{wrong}=normal:5:1"])
+        refused = invoke(*words[:5], "--spread", f"{wrong}=normal:5:1")
         assert (refused.exit_code, said in refused.stderr) == (2, True), refused.stderr

@@ -13,8 +13,8 @@ import numpy as np
 import pandas
 import pytest
 import xarray
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from click.testing import Result
+from commands import invoke
 from pucks import simulate
 
 from puck_tables import Puck, Table
@@ -26,10 +26,6 @@ PUCK = [sys.executable, "-c", "from puck_tables.cli.main import main; main(prog_
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def puck(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
 
 
 def refused(result: Result, code: int, *words: str) -> str:
@@ -48,7 +44,7 @@ def refused(result: Result, code: int, *words: str) -> str:
 
 
 def test_the_first_command_says_what_was_assumed():
-    result = puck("simulate", "--v0", "1,0", "--w0", "5")
+    result = invoke("simulate", "--v0", "1,0", "--w0", "5")
     assert result.exit_code == 0
     for words in (
         "r = 1 m, delta = 0.5, f g = 1 m/s^2\n", "B: spin-rich", "3.96299205 s",
@@ -57,11 +53,11 @@ def test_the_first_command_says_what_was_assumed():
         assert words in result.stdout
     assert "a default one: --help" in result.stderr
     assert str(Puck.similar().simulate((1.0, 0.0), 5.0, frames=1)) + "\n" == result.stdout
-    assert "defaults" not in puck("simulate", "--v0", "1,0", "--delta", "0.5").stdout
+    assert "defaults" not in invoke("simulate", "--v0", "1,0", "--delta", "0.5").stdout
 
 
 def test_json_is_one_object_with_the_promised_keys():
-    result = puck("simulate", "--v0", "1,0", "--w0", "5", "--json")
+    result = invoke("simulate", "--v0", "1,0", "--w0", "5", "--json")
     found = json.loads(result.stdout)
     assert result.stdout.count("\n") == 1
     assert set(found) >= {
@@ -73,12 +69,12 @@ def test_json_is_one_object_with_the_promised_keys():
 
 def test_a_real_puck():
     arguments = ["--v0", "2,0", "--w0", "30", "--radius", "0.0381", "--height", "0.0254"]
-    found = json.loads(puck("simulate", *arguments, "--friction", "0.1", "--json").stdout)
+    found = json.loads(invoke("simulate", *arguments, "--friction", "0.1", "--json").stdout)
     assert found["delta"] == pytest.approx(2 * 0.1 * 0.0254 / 0.0381)
     assert found["decel"] == pytest.approx(0.980665)
-    moon = puck("simulate", *arguments, "--friction", "0.1", "--gravity", "1.62", "--json")
+    moon = invoke("simulate", *arguments, "--friction", "0.1", "--gravity", "1.62", "--json")
     assert json.loads(moon.stdout)["decel"] == pytest.approx(0.162)
-    heavy = puck("simulate", *arguments, "--friction", "0.1", "--mass", "0.17", "--json")
+    heavy = invoke("simulate", *arguments, "--friction", "0.1", "--mass", "0.17", "--json")
     assert json.loads(heavy.stdout)["kinetic_energy"] == pytest.approx(
         0.5 * 0.17 * (4 + 0.5 * (0.0381 * 30) ** 2)
     )
@@ -87,7 +83,7 @@ def test_a_real_puck():
 @pytest.mark.parametrize("ending", ["h5", "csv", "jsonl"])
 def test_saved_trajectories_open_elsewhere(folder: Path, ending: str):
     name = f"run.{ending}"
-    result = puck("simulate", "--v0", "1,0", "--w0", "5", "--frames", "20", "-o", name)
+    result = invoke("simulate", "--v0", "1,0", "--w0", "5", "--frames", "20", "-o", name)
     assert result.exit_code == 0
     assert f"wrote {name}" in result.stderr
     if ending == "h5":
@@ -111,22 +107,22 @@ def test_saved_trajectories_open_elsewhere(folder: Path, ending: str):
 
 
 def test_times_from_the_command_line():
-    puck("simulate", "--v0", "1,0", "--times", "0,0.5,7", "-o", "a.csv")
+    invoke("simulate", "--v0", "1,0", "--times", "0,0.5,7", "-o", "a.csv")
     np.testing.assert_allclose(pandas.read_csv("a.csv")["x[m]"], [0.0, 0.375, 0.5], rtol=1e-12)
-    puck("simulate", "--v0", "1,0", "--times", "0:1:3", "-o", "b.csv")
+    invoke("simulate", "--v0", "1,0", "--times", "0:1:3", "-o", "b.csv")
     np.testing.assert_allclose(pandas.read_csv("b.csv")["time[s]"], [0.0, 0.5, 1.0])
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("start", [["--w0", "5"], ["--w0", "0"], ["--v0", "0,0", "--w0", "1"]])
 def test_pictures_are_drawn_for_every_regime(folder: Path, start: list[str]):
-    assert puck("simulate", "--v0", "1,0", *start, "--plot", "run.png").exit_code == 0
+    assert invoke("simulate", "--v0", "1,0", *start, "--plot", "run.png").exit_code == 0
     assert Path("run.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
-    assert puck("simulate", "--v0", "0,0", "--plot", "rest.svg").exit_code == 0
+    assert invoke("simulate", "--v0", "0,0", "--plot", "rest.svg").exit_code == 0
 
 
 def test_sweep_writes_labelled_maps_and_draws_them():
-    result = puck(
+    result = invoke(
         "sweep", "--speed", "0:2:5", "--w0", "-3:3:7", "--delta", "0:1:3", "-o", "map.h5",
         "--plot", "map.png",
     )  # fmt: skip
@@ -142,32 +138,32 @@ def test_sweep_writes_labelled_maps_and_draws_them():
         run = simulate((1, 0), -2.0)
         assert float(at.stop_time) == pytest.approx(run.stop_time, abs=1e-6)
         assert float(at.stop_y) == pytest.approx(run.stop_position[1], abs=1e-6)
-    assert puck("sweep", "--w0", "0:10:11", "--v0", "1,0", "--plot", "curve.png").exit_code == 0
+    assert invoke("sweep", "--w0", "0:10:11", "--v0", "1,0", "--plot", "curve.png").exit_code == 0
 
 
 def test_sweep_prints_csv_without_an_output():
-    result = puck("sweep", "--w0", "0:10:3", "--v0", "1,0", "--delta", "1")
+    result = invoke("sweep", "--w0", "0:10:3", "--v0", "1,0", "--delta", "1")
     rows = result.stdout.splitlines()
     assert rows[0].startswith("launch_spin[rad/s],stop_time[s],stop_x[m],stop_y[m]")
     assert len(rows) == 4
     assert float(rows[2].split(",")[1]) == pytest.approx(4.000188799127, abs=1e-6)
     assert "3 stopped" in result.stderr
-    assert len(puck("sweep").stdout.splitlines()) == 1 + 41 * 41
+    assert len(invoke("sweep").stdout.splitlines()) == 1 + 41 * 41
 
 
 def test_build_info_validate(folder: Path):
-    built = puck("build-tables", "--accuracy", "1e-6", "-o", "rough.h5")
+    built = invoke("build-tables", "--accuracy", "1e-6", "-o", "rough.h5")
     assert built.exit_code == 0
     assert Table.load("rough.h5").metadata["command"].startswith("puck ")
-    assert puck("build-tables", "--cells", "32", "-o", "hand.h5").exit_code == 0
-    told = puck("info", "rough.h5").stdout
+    assert invoke("build-tables", "--cells", "32", "-o", "hand.h5").exit_code == 0
+    told = invoke("info", "rough.h5").stdout
     for words in ("69 phi x 4 delta", "tolerance   1e-06", "uniform pressure", "right"):
         assert words in told
-    assert "default table" in puck("info").stdout
-    judged = puck("validate", "rough.h5")
+    assert "default table" in invoke("info").stdout
+    judged = invoke("validate", "rough.h5")
     assert judged.exit_code == 0
     assert judged.stdout.count("pass") == 12
-    near = puck("simulate", "--v0", "1,0", "--w0", "5", "--table", "rough.h5", "--tol", "1e-5",
+    near = invoke("simulate", "--v0", "1,0", "--w0", "5", "--table", "rough.h5", "--tol", "1e-5",
                 "--json")  # fmt: skip
     assert json.loads(near.stdout)["stop_time"] == pytest.approx(3.96299205, abs=5e-5)
 
@@ -175,7 +171,7 @@ def test_build_info_validate(folder: Path):
 def test_validate_ends_with_3_when_a_table_is_out_of_its_tolerance(monkeypatch: pytest.MonkeyPatch):
     table = replace(Table.shipped(), tolerance=1e-13)
     monkeypatch.setattr("puck_tables.cli.tables.tables_named", lambda file: [table])
-    result = puck("validate")
+    result = invoke("validate")
     assert result.exit_code == 3
     assert "FAIL" in result.stdout
     assert "Error: the table is out of its own tolerance" in result.stderr
@@ -244,16 +240,14 @@ V0 = ["simulate", "--v0", "1,0"]
         (["build-tables", "--accuracy", "1e-6", "--cells", "65"], ["both fix the grid"]),
     ],
 )
-def test_bad_input_is_one_sentence_and_writes_nothing(
-    folder: Path, arguments: list[str], words: list[str]
-):
-    refused(puck(*arguments), 2, *words)
+def test_bad_input_is_one_sentence_and_writes_nothing(folder, arguments, words):
+    refused(invoke(*arguments), 2, *words)
     assert list(folder.iterdir()) == []
 
 
 def test_pictures_without_matplotlib_say_what_to_install(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    refused(puck(*V0, "--plot", "run.png"), 1, "pip install matplotlib")
+    refused(invoke(*V0, "--plot", "run.png"), 1, "pip install matplotlib")
 
 
 def test_help_and_version_are_quick_and_load_nothing_heavy():
@@ -281,24 +275,24 @@ def _seconds(argument: str) -> float:
 
 
 def test_odd_names_and_numbers(folder: Path):
-    refused(puck(*V0, "-o", "x" * 300 + ".csv"), 1, "name too long")
-    refused(puck(*V0, "-o", "/dev/stdout", "--overwrite"), 2, ".h5, .csv, .json, .jsonl")
+    refused(invoke(*V0, "-o", "x" * 300 + ".csv"), 1, "name too long")
+    refused(invoke(*V0, "-o", "/dev/stdout", "--overwrite"), 2, ".h5, .csv, .json, .jsonl")
     Path("pipe.csv").unlink(missing_ok=True)
     os.mkfifo("pipe.csv")
-    refused(puck(*V0, "-o", "pipe.csv", "--overwrite"), 1, "not a regular file")
+    refused(invoke(*V0, "-o", "pipe.csv", "--overwrite"), 1, "not a regular file")
     for count in ("²", "1_0", "9" * 5000, "+5"):
-        refused(puck("sweep", "--w0", f"0:1:{count}"), 2, "COUNT")
+        refused(invoke("sweep", "--w0", f"0:1:{count}"), 2, "COUNT")
     for number in ("1_0", "１", ""):
-        refused(puck("simulate", "--v0", f"{number},0"), 2, "is not a number")
+        refused(invoke("simulate", "--v0", f"{number},0"), 2, "is not a number")
     assert [path.name for path in folder.iterdir()] == ["pipe.csv"]
-    assert puck(*V0, "-o", "\udcff.csv").exit_code == 0
+    assert invoke(*V0, "-o", "\udcff.csv").exit_code == 0
 
 
 def test_a_link_is_followed(folder: Path):
     Path("real.csv").write_text("mine")
     Path("link.csv").symlink_to("real.csv")
-    refused(puck(*V0, "-o", "link.csv"), 1, "exists already")
-    assert puck(*V0, "-o", "link.csv", "--overwrite").exit_code == 0
+    refused(invoke(*V0, "-o", "link.csv"), 1, "exists already")
+    assert invoke(*V0, "-o", "link.csv", "--overwrite").exit_code == 0
     assert Path("link.csv").is_symlink()
     assert Path("real.csv").read_text().startswith("time[s]")
 
@@ -311,13 +305,13 @@ def test_everything_printed_is_ascii():
         ["info", "--help"], ["validate", "--help"], ["info"], ["validate"], [*V0, "--w0", "5"],
         [*V0, "--json"], ["sweep", "--w0", "0:1:2"],
     ):  # fmt: skip
-        assert puck(*arguments).output.isascii(), arguments
+        assert invoke(*arguments).output.isascii(), arguments
 
 
 def test_the_table_that_is_read_is_never_replaced():
-    puck("build-tables", "--accuracy", "1e-6", "-o", "t.h5")
+    invoke("build-tables", "--accuracy", "1e-6", "-o", "t.h5")
     for command in (["sweep"], V0):
-        result = puck(*command, "--tol", "1e-4", "--table", "t.h5", "-o", "t.h5",
+        result = invoke(*command, "--tol", "1e-4", "--table", "t.h5", "-o", "t.h5",
                       "--overwrite")  # fmt: skip
         refused(result, 2, "is read by this command")
     assert Table.load("t.h5").tolerance == 1e-6
@@ -329,46 +323,46 @@ def test_tables_of_every_kind(folder: Path):
         (["--pressure", "annulus:0.8", "--accuracy", "1e-5"], "stone.h5", "annulus:0.8 pressure"),
         (["--kind", "stops", "--cells", "16"], "stops.h5", "33 phi x 9"),
     ):
-        built = puck("build-tables", *arguments, "-o", name)
+        built = invoke("build-tables", *arguments, "-o", name)
         assert built.exit_code == 0, built.stderr
         assert words in built.stdout
-        assert puck("info", name).stdout.splitlines()[1:] == built.stdout.splitlines()[1:]
-    judged = puck("validate", "stone.h5")
+        assert invoke("info", name).stdout.splitlines()[1:] == built.stdout.splitlines()[1:]
+    judged = invoke("validate", "stone.h5")
     assert (judged.exit_code, judged.stdout.count("pass")) == (0, 9)
-    refused(puck("build-tables", "--pressure", "square"), 2, "no pressure law is called 'square'")
+    refused(invoke("build-tables", "--pressure", "square"), 2, "no pressure law is called 'square'")
     refused(
-        puck("build-tables", "--pressure", "ring", "--kind", "stops"), 2, "--pressure goes with"
+        invoke("build-tables", "--pressure", "ring", "--kind", "stops"), 2, "--pressure goes with"
     )
 
 
 @pytest.mark.thorough
 def test_pucks_of_every_kind():
     v0 = ["--v0", "1,0", "--tol", "1e-6"]
-    report = puck("simulate", *v0, "--w0", "5", "--delta", "2").stdout
+    report = invoke("simulate", *v0, "--w0", "5", "--delta", "2").stdout
     for words in ("100 % of the base loaded at the launch, falling to 92.97 %; lifts at 3.7995",
                   "section", "delta = 2"):  # fmt: skip
         assert words in report
-    report = puck("simulate", *v0, "--w0", "0.3", "--delta", "1.2").stdout
+    report = invoke("simulate", *v0, "--w0", "0.3", "--delta", "1.2").stdout
     assert "all of it from 0.9244" in report
-    assert "part of it lifted throughout" in puck("simulate", *v0, "--delta", "2").stdout
-    report = puck("simulate", *v0, "--w0", "1", "--pressure", "ring", "--delta", "0").stdout
+    assert "part of it lifted throughout" in invoke("simulate", *v0, "--delta", "2").stdout
+    report = invoke("simulate", *v0, "--w0", "1", "--pressure", "ring", "--delta", "0").stdout
     assert "pressure ring, k/r = 0.707107" in report
     assert "the spin dies out before the sliding" in report
-    report = puck("simulate", *v0, "--w0", "1", "--pressure", "hertz", "--delta", "0").stdout
+    report = invoke("simulate", *v0, "--w0", "1", "--pressure", "hertz", "--delta", "0").stdout
     assert "the sliding dies out before the spin" in report
-    tall = puck("simulate", *v0, "--w0", "5", "--delta", "2", "--json", "-o", "run.h5",
+    tall = invoke("simulate", *v0, "--w0", "5", "--delta", "2", "--json", "-o", "run.h5",
                 "--plot", "run.png")  # fmt: skip
     found = json.loads(tall.stdout)
     assert (found["contact_closes"], found["pressure"]) == (None, "uniform")
     with xarray.open_dataset("run.h5", engine="h5netcdf") as data:
         assert data.attrs["contact_opens"] == found["contact_opens"]
         assert "contact_closes" not in data.attrs
-    assert puck("simulate", *v0, "--w0", "1", "--pressure", "ring", "--delta", "0", "--plot",
+    assert invoke("simulate", *v0, "--w0", "1", "--pressure", "ring", "--delta", "0", "--plot",
                 "ring.png").exit_code == 0  # fmt: skip
-    swept = puck("sweep", *v0, "--w0", "0:2:3", "--pressure", "annulus:0.8", "--gyration", "0.9",
+    swept = invoke("sweep", *v0, "--w0", "0:2:3", "--pressure", "annulus:0.8", "--gyration", "0.9",
                  "--explain")  # fmt: skip
     assert len(swept.stdout.splitlines()) == 4
     assert "sections of pressure annulus:0.8, k/r = 0.9" in swept.stderr
-    aimed = puck("aim", "--target", "2,0.1", "--w0", "5", "--gyration", "1")
+    aimed = invoke("aim", "--target", "2,0.1", "--w0", "5", "--gyration", "1")
     assert "1 launch" in aimed.stdout
     assert "k/r = 1" in aimed.stdout

@@ -149,9 +149,7 @@ def test_a_client_killed_in_the_middle_goes_on(tmp_path: Path):
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(
-    number: signal.Signals, tmp_path: Path
-):
+def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(number, tmp_path):
     code = "from puck_tables.cli.start import main; main()"
     words = ["sweep", "--w0", "0:5:2000", "--speed", "0:2:2000", "--method", "adaptive", "-o",
              "m.zarr", "--cluster", "local:2"]  # fmt: skip
@@ -174,9 +172,7 @@ def test_ctrl_c_leaves_a_cluster_of_its_own_within_a_second_and_goes_on(
     waited_for(lambda: subprocess.run(["pgrep", "-g", str(client.pid)]).returncode != 0, 20.0)
 
 
-def test_what_is_no_cluster_is_refused_and_nothing_is_begun(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_what_is_no_cluster_is_refused_and_nothing_is_begun(tmp_path, monkeypatch):
     monkeypatch.setattr("puck_tables.bulk.cluster._REACH", 0.5)  # s
     for where in ("local:0", "local:99999", "here", "tcp://nowhere", "http://127.0.0.1:9", 4):
         with pytest.raises(InputError, match="must be local:N"):

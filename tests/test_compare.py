@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import InputError, compare, reference_case
 from puck_tables.plot.comparison_figure import page
@@ -191,7 +190,7 @@ def test_the_stop_is_that_of_the_puck_compared(tmp_path: Path):
     assert (told["puck"], told["end_time"]) == ("red", found.end_time)
     assert found.dataset().attributes["end_time"] == found.end_time
     assert found.plot().axes[1].get_xlim()[1] == pytest.approx(1.15 * found.end_time)
-    result = CliRunner().invoke(main, ["compare", str(path), "--case", "take-out", "--puck", "red"])
+    result = invoke("compare", path, "--case", "take-out", "--puck", "red")
     assert "exact: red at rest after 0.37160" in result.stdout
     text = page(found)
     assert "The puck red ends after 0.37160" in text
@@ -288,7 +287,7 @@ def test_the_command(tmp_path: Path):
         "compare", str(path), "--case", "coin", "--report", str(page), "--plot", str(picture),
         "-o", str(table),
     ]  # fmt: skip
-    result = CliRunner().invoke(main, arguments)
+    result = invoke(*arguments)
     assert result.exit_code == 0, result.output
     assert "truth and not error" in result.stdout
     text = page.read_text()
@@ -297,7 +296,7 @@ def test_the_command(tmp_path: Path):
     assert picture.stat().st_size > 10_000
     assert json.loads(table.read_text())["columns"]["place_error_max"]["values"][0] < 1e-14
     before = page.read_bytes()
-    again = CliRunner().invoke(main, arguments)
+    again = invoke(*arguments)
     assert again.exit_code != 0 and "exists" in again.stderr and page.read_bytes() == before
 
 
@@ -314,6 +313,6 @@ def test_the_command(tmp_path: Path):
     ],
 )
 def test_refused_in_a_sentence(arguments: list[str], words: str):
-    result = CliRunner().invoke(main, arguments)
+    result = invoke(*arguments)
     assert result.exit_code == 2 and words in result.stderr
     assert result.stderr.startswith("Error: ") and "Traceback" not in result.output

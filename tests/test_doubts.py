@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from puck_tables.cli.options import PUCK_NUMBERS
 from puck_tables.cli.simulate import simulate
 
@@ -99,7 +98,7 @@ def test_a_base_in_a_file_is(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     ("limit-surface --base box:20x10", "a base beyond 10 m"),
 ])  # fmt: skip
 def test_commands_ask_once_for_another_unit(command: str, words: str):
-    result = CliRunner().invoke(main, command.split())
+    result = invoke(*command.split())
     assert result.exit_code == 0 and result.stderr.count(words) == 1, result.stderr
 
 
@@ -110,7 +109,7 @@ def test_commands_ask_once_for_another_unit(command: str, words: str):
     "aim --target 300m,0 --w0 0 --radius 32m",
 ])  # fmt: skip
 def test_commands_ask_of_nothing_that_has_its_unit(command: str):
-    result = CliRunner().invoke(main, command.split())
+    result = invoke(*command.split())
     assert result.exit_code == 0 and "beyond" not in result.stderr, result.stderr
 
 
@@ -172,6 +171,6 @@ def test_grads_are_no_degrees():
 
 
 def test_wrong_usage_is_said_alone():
-    ended = CliRunner().invoke(main, ["simulate", "--mass", "2e48"])
+    ended = invoke("simulate", "--mass", "2e48")
     assert ended.exit_code == 2 and "Missing option '--v0'" in ended.stderr
     assert "beyond" not in ended.stderr

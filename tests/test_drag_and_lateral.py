@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables.motion.body import STANDARD_GRAVITY as G
@@ -147,7 +146,7 @@ def test_what_is_refused_and_what_is_said():
     assert "lateral force (empirical)" in run.explain()
     assert "no dry friction over the contact explains it" in run.explain()
     words = "--v0 1,0 --w0 1 --radius 0.05 --friction 0.1 --mass 1 --set lateral.strength=0.1"
-    said = CliRunner().invoke(main, ["simulate", *words.split()])
+    said = invoke("simulate", *words.split())
     assert "lateral    strength 0.1 N; empirical: no dry friction over" in said.stdout
     puck = pt.Puck(RADIUS, friction=0.1, launch=pt.Launch((1.0, 0.0), 1.0))
     board = pt.Scene(pucks=[puck], lateral=pt.Lateral(0.1)).simulate()

@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables.explore.page import LAWS, TOL
@@ -30,7 +29,7 @@ DEGREE = math.pi / 180.0
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("explorer") / "page.html"
-    made = CliRunner().invoke(main, ["explore", "-o", str(path)])
+    made = invoke("explore", "-o", path)
     assert made.exit_code == 0, made.output
     assert path.stat().st_size < 300_000
     return path.as_uri()
@@ -192,7 +191,7 @@ def test_the_address_keeps_it_and_commands_say_it(page: Any, address: str):
     assert room["run"].spin[0] == 33.0
     page.locator("#command").click()
     command = page.locator("#copied").text_content().split()
-    assert CliRunner().invoke(main, command[1:]).exit_code == 0
+    assert invoke(*command[1:]).exit_code == 0
     page.goto(address + "#spin=-12&speed=1&no=3")
     assert page.evaluate("explorer.now.spin") == -12
 
@@ -324,7 +323,7 @@ def test_a_base_is_drawn_by_hand_by_text_and_kept(page: Any, address: str):
     assert run["time"] == pytest.approx(room["run"].stop_time, rel=1e-5)
     page.locator("#command").click()
     words = shlex.split(page.locator("#copied").text_content())
-    assert CliRunner().invoke(main, words[1:]).exit_code == 0
+    assert invoke(*words[1:]).exit_code == 0
     kept = page.url
     page.goto(address)
     page.goto(kept)
@@ -357,7 +356,7 @@ def test_axe_finds_nothing(page: Any):
 @pytest.mark.parametrize(("name", "why"), [("explorer.txt", "FILE.html"), ("there.html", "exists")])
 def test_refusals(name: str, why: str, tmp_path: Path):
     (tmp_path / "there.html").write_text("mine")
-    said = CliRunner().invoke(main, ["explore", "-o", str(tmp_path / name)])
+    said = invoke("explore", "-o", tmp_path / name)
     assert said.exit_code != 0
     assert why in said.output
     assert (tmp_path / "there.html").read_text() == "mine"

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exported import RUNNERS, WIDTHS, answers, launches, runner, text_of, units
+from rarely import thorough
 
 import puck_tables as pt
 from puck_tables.export.languages import LANGUAGES
@@ -25,9 +26,7 @@ def by_library(count: int, tol: float) -> dict[str, tuple[np.ndarray, np.ndarray
 
 
 @every_language
-@pytest.mark.parametrize(
-    "tol", [1e-6, *(pytest.param(tol, marks=pytest.mark.thorough) for tol in (1e-4, 1e-9))]
-)
+@pytest.mark.parametrize("tol", [1e-6, *map(thorough, (1e-4, 1e-9))])
 def test_equal_to_the_library(language: str, tol: float, tmp_path: Path):
     run = runner(language, tol, tmp_path)
     for name, (rows, wanted) in by_library(POINTS[language], max(1e-3 * tol, 1e-10)).items():
@@ -101,7 +100,7 @@ def test_the_largest_and_the_smallest_numbers(language: str, tmp_path: Path):
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-@pytest.mark.parametrize("tols", [TOLS[:2], pytest.param(TOLS, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("tols", [TOLS[:2], thorough(TOLS)])
 def test_size_of_a_file(language: str, tols: list[float]):
     sizes = [len(text_of(language, "stop,state,resultants", tol).encode()) for tol in tols]
     assert sizes[0] <= 30_000
@@ -116,7 +115,7 @@ def test_a_part_stands_alone(language: str, what: str, tmp_path: Path):
     found, _ = run(what, np.ascontiguousarray(rows))
     scale = units(rows, "stop") if what == "stop" else 1.0
     assert (np.abs(found - wanted) / scale).max() <= 1e-4
-    others = {"stop": "CURVE", "resultants": "STOP"}  # words of what was not asked for
+    others = {"stop": "SIMILARITY", "resultants": "STOP"}  # words of what was not asked for
     assert others[what] not in text_of(language, what, 1e-4)
 
 

@@ -8,9 +8,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
-from puck_tables.cli.main import main
 
 import puck_tables as pt
 
@@ -21,22 +20,22 @@ import puck_tables as pt
 def test_a_file_is_written_whole(tmp_path: Path, language: str, name: str):
     path = tmp_path / name
     options = ["export", "--language", language, "--what", "resultants", "-o", str(path)]
-    done = CliRunner().invoke(main, options)
+    done = invoke(*options)
     assert done.exit_code == 0 and f"wrote {path}" in done.stderr and not done.stdout
     assert path.read_text() == pt.export_source(language, "resultants").text
-    again = CliRunner().invoke(main, options)
+    again = invoke(*options)
     assert again.exit_code == 1 and "exists already" in again.stderr
-    assert CliRunner().invoke(main, [*options, "--overwrite"]).exit_code == 0
+    assert invoke(*options, "--overwrite").exit_code == 0
 
 
 def test_a_base_has_its_wrench_in_a_file(tmp_path: Path):
     path = tmp_path / "box.js"
     options = ["export", "--language", "js", "--base", "box:20cmx10cm", "-o", str(path)]
-    done = CliRunner().invoke(main, [*options, "--what", "wrench"])
+    done = invoke(*options, "--what", "wrench")
     assert done.exit_code == 0
     source = pt.export_source("js", "wrench", puck=pt.Puck(base="box:0.2x0.1"))
     assert path.read_text() == source.text
-    refused = CliRunner().invoke(main, [*options, "--overwrite"])
+    refused = invoke(*options, "--overwrite")
     assert refused.exit_code != 0 and "a base 'wrench' is exported" in refused.stderr
 
 
@@ -59,11 +58,9 @@ def test_a_base_has_its_wrench_in_a_file(tmp_path: Path):
         (["-o", "a.c"], ["--language"]),
     ],
 )
-def test_bad_input_is_one_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], words: list[str]
-):
+def test_bad_input_is_one_sentence(tmp_path, monkeypatch, options, words):
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(main, ["export", *options])
+    done = invoke("export", *options)
     assert done.exit_code in (1, 2)
     assert "Traceback" not in done.stderr and done.stderr.count("Error: ") == 1
     assert all(word in done.stderr for word in words), done.stderr

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from pucks import sweep
+from rarely import nightly, thorough
 
 from puck_tables import Table
 
@@ -52,7 +53,8 @@ def sweeps_killed(folder: Path, kills: int) -> int:
     return kills
 
 
-def check_killed_sweeps(tmp_path: Path, kills: int) -> None:
+@pytest.mark.parametrize("kills", [thorough(1), nightly(20)])
+def test_a_killed_sweep_goes_on(tmp_path: Path, kills: int) -> None:
     pytest.importorskip("zarr")
     base = sweep(**GRID, table=Table.shipped(), tol=1e-9)
     assert sweeps_killed(tmp_path, kills) >= 1
@@ -65,17 +67,8 @@ def check_killed_sweeps(tmp_path: Path, kills: int) -> None:
         assert data.stop_x.values.tobytes() == base.stop_x.tobytes()
 
 
-@pytest.mark.thorough
-def test_a_killed_sweep_goes_on(tmp_path: Path):
-    check_killed_sweeps(tmp_path, kills=1)
-
-
-@pytest.mark.nightly
-def test_a_sweep_killed_twenty_times_goes_on(tmp_path: Path):
-    check_killed_sweeps(tmp_path, kills=20)
-
-
-def check_killed_builds(tmp_path: Path, kills: int) -> None:
+@pytest.mark.parametrize("kills", [thorough(2), nightly(20)])
+def test_a_killed_build_leaves_no_half(tmp_path: Path, kills: int) -> None:
     def build(kind: str, name: str) -> list[str]:
         return [*PUCK, "build-tables", "--kind", kind, "--accuracy", "1e-5", "-o", name]
 
@@ -94,16 +87,6 @@ def check_killed_builds(tmp_path: Path, kills: int) -> None:
             assert Table.load(tmp_path / name).tolerance == 1e-5
             whole += 1
     assert whole < kills  # some kills came in time
-
-
-@pytest.mark.thorough
-def test_a_killed_build_leaves_no_half(tmp_path: Path):
-    check_killed_builds(tmp_path, kills=2)
-
-
-@pytest.mark.nightly
-def test_twenty_killed_builds_leave_no_half(tmp_path: Path):
-    check_killed_builds(tmp_path, kills=20)
 
 
 @pytest.mark.thorough

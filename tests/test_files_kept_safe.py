@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables._core.safe_write import check_target, write_bytes
@@ -31,10 +30,6 @@ velocity = [0.5, 0.0]
 [force]
 file = "force.csv"
 """
-
-
-def puck(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
 
 
 @pytest.fixture(autouse=True)
@@ -69,7 +64,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 )
 def test_no_output_replaces_what_is_read(arguments: str, folder: Path):
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
-    ended = puck(*arguments.split(), "--overwrite")
+    ended = invoke(*arguments.split(), "--overwrite")
     assert ended.exit_code == 2, ended.output
     assert "is read by this command" in ended.stderr
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
@@ -90,7 +85,7 @@ def test_no_output_replaces_the_other(link: str, folder: Path):
             Path(second).symlink_to(first)
         else:
             os.link(first, second)
-    ended = puck("simulate", "--v0", "1,0", "-o", first, "--plot", second, "--overwrite")
+    ended = invoke("simulate", "--v0", "1,0", "-o", first, "--plot", second, "--overwrite")
     assert ended.exit_code == 2
     assert "is named for two outputs" in ended.stderr
     assert not Path(first).exists() or Path(first).read_text() == "old"
@@ -142,9 +137,7 @@ def test_the_umask_is_never_touched(folder: Path, monkeypatch: pytest.MonkeyPatc
     write_bytes(folder / "a.txt", b"y", overwrite=True)
 
 
-def test_saving_in_a_deleted_folder_is_a_sentence(
-    folder: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
-):
+def test_saving_in_a_deleted_folder_is_a_sentence(folder, tmp_path_factory, monkeypatch):
     gone = tmp_path_factory.mktemp("gone")
     monkeypatch.chdir(gone)
     gone.rmdir()
@@ -153,7 +146,7 @@ def test_saving_in_a_deleted_folder_is_a_sentence(
             check_target(path)
         with pytest.raises(OutputError, match="cannot write"):
             write_bytes(path, b"x", overwrite=True)
-    ended = puck("simulate", "--v0", "1,0", "-o", "a.csv")
+    ended = invoke("simulate", "--v0", "1,0", "-o", "a.csv")
     assert ended.exit_code == 1
     assert ended.stderr.startswith("Error: cannot write a.csv")
     assert len(ended.stderr.splitlines()) == 1
@@ -180,12 +173,12 @@ def test_help_to_a_full_device_is_a_sentence(arguments: str, unbuffered: str):
 def test_what_cannot_be_read_does_not_say_written(name: str, command: str, folder: Path):
     Path("loop.toml").symlink_to("loop.toml")
     Path("shut").mkdir(mode=0)
-    ended = puck(*command.split(), name)
+    ended = invoke(*command.split(), name)
     assert ended.exit_code in (1, 2)
     assert "cannot write" not in ended.stderr
     assert len(ended.stderr.splitlines()) == 1
     for option in ("--table", "--pressure"):
-        ended = puck("simulate", "--v0", "1,0", option, f"{name}.csv")
+        ended = invoke("simulate", "--v0", "1,0", option, f"{name}.csv")
         assert ended.exit_code in (1, 2)
         assert "cannot write" not in ended.stderr
 
@@ -201,7 +194,7 @@ def test_nothing_that_a_terminal_obeys_comes_from_files(folder: Path):
         "scene check red.toml", "scene check bad.toml", "simulate --scene red.toml --explain",
         "sweep --scene red.toml --set launch.spin=0:1:3 -o a.csv --explain",
     ):  # fmt: skip
-        ended = puck(*arguments.split())
+        ended = invoke(*arguments.split())
         assert "\x1b" not in ended.output
         assert "\x07" not in ended.output
         assert "x1b[31m" in ended.output, arguments

@@ -5,17 +5,12 @@ from __future__ import annotations
 import math
 
 import pytest
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import InputError, Scene
 from puck_tables._core import own_folder
 
 SCENE = {"puck": {"radius": 0.04}, "launch": {"velocity": [1.0, 0.0]}}
-
-
-def puck(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
 
 
 @pytest.mark.parametrize(
@@ -30,7 +25,7 @@ def puck(*arguments: str) -> Result:
     ],
 )
 def test_the_report_begins_with_two_plain_sentences(launch: list[str], first: str, second: str):
-    lines = puck("simulate", *launch).stdout.splitlines()
+    lines = invoke("simulate", *launch).stdout.splitlines()
     assert first in lines[0] and second in lines[1] and lines[2] == ""
     assert not any(word in "".join(lines[:2]) for word in ("delta", "Q", "phi", "J ="))
 
@@ -40,7 +35,7 @@ def test_degrees_are_understood_and_asked_for():
     scene = Scene.from_tables({**SCENE, "floor": floor})
     assert scene.floor.slope == math.radians(30.0)
     assert scene.floor.downhill == -0.5 * math.pi
-    swept = puck("sweep", "--scene", "incline", "--set", "floor.slope=0deg:5deg:2")
+    swept = invoke("sweep", "--scene", "incline", "--set", "floor.slope=0deg:5deg:2")
     assert [line.split(",")[0] for line in swept.stdout.splitlines()[1:]] == [
         "0.0", str(math.radians(5.0))
     ]  # fmt: skip
@@ -51,15 +46,15 @@ def test_degrees_are_understood_and_asked_for():
 
 
 def test_what_was_meant_is_guessed():
-    assert "did you mean 'air-hockey'?" in puck("simulate", "--scene", "airhockey").stderr
-    assert "Did you mean '--w0'?" in puck("simulate", "--v0", "1,0", "--omega", "5").stderr
-    assert "did you mean" not in puck("simulate", "--scene", "zzz").stderr
+    assert "did you mean 'air-hockey'?" in invoke("simulate", "--scene", "airhockey").stderr
+    assert "Did you mean '--w0'?" in invoke("simulate", "--v0", "1,0", "--omega", "5").stderr
+    assert "did you mean" not in invoke("simulate", "--scene", "zzz").stderr
 
 
 def test_a_huge_puck_is_asked_for(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(own_folder, "_said", set())  # each sentence is said once
     real = ("--height", "0.025", "--friction", "0.1", "--v0", "2,0")
-    huge = puck("simulate", "--radius", "38", *real)
+    huge = invoke("simulate", "--radius", "38", *real)
     assert huge.exit_code == 0
     assert huge.stderr.startswith("a radius beyond 10 m: lengths are in metres")
-    assert "metres" not in puck("simulate", "--radius", "0.038", *real).stderr
+    assert "metres" not in invoke("simulate", "--radius", "0.038", *real).stderr

@@ -7,7 +7,7 @@ import math
 import film_judge
 import numpy as np
 import pytest
-from rarely import few
+from rarely import few, nightly
 
 import puck_tables as pt
 from puck_tables.fitting.forward_model import Moving, states_and_slopes, states_of
@@ -200,7 +200,7 @@ def test_frames_held_out_are_predicted_within_their_errors(true):
 @pytest.mark.thorough
 @pytest.mark.parametrize(("noise", "count", "least", "most"), [
     (None, 40, 34, 40), (NOISE, 40, 34, 40),  # 38 expected; fewer: p = 0.01
-    pytest.param(None, 400, 370, 396, marks=pytest.mark.nightly),  # 380 expected
+    nightly(None, 400, 370, 396),  # 380 expected
 ])  # fmt: skip
 def test_how_far_predictions_are_off_is_as_chance_says(true, noise, count, least, most):
     inside = 0

@@ -12,9 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from base_judge import Judge
-from click.testing import CliRunner
-from puck_tables.cli.main import main
-from rarely import few
+from commands import invoke
+from rarely import few, thorough
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
@@ -106,8 +105,8 @@ def test_a_box_is_not_a_disc():
 @pytest.mark.parametrize(
     ("factor", "more", "words"),
     [(1.0, 0.5 * np.pi, "those of the y axis"),
-     pytest.param(-1.0, 0.0, "grew the other way", marks=pytest.mark.thorough),
-     pytest.param(np.degrees(1.0), 0.0, "were in degrees", marks=pytest.mark.thorough)],
+     thorough(-1.0, 0.0, "grew the other way"),
+     thorough(np.degrees(1.0), 0.0, "were in degrees")],
 )  # fmt: skip
 def test_angles_that_are_told_otherwise_are_named(factor: float, more: float, words: str):
     track, puck, _ = film(np.random.default_rng([38, 1]), "box:0.2x0.1")
@@ -281,20 +280,20 @@ def test_the_command(tmp_path: Path):
     file, saved = tmp_path / "block.csv", tmp_path / "fit.json"
     np.savetxt(file, rows, delimiter=",", header="t [s],x [m],y [m],angle [rad]", comments="")
     words = ["fit", str(file), "--base", "box:20cmx10cm", "--height", str(puck.height)]
-    result = CliRunner().invoke(main, [*words, "-o", str(saved), "--plot", str(tmp_path / "a.png")])
+    result = invoke(*words, "-o", saved, "--plot", tmp_path / "a.png")
     assert result.exit_code == 0, result.stderr
     assert "base            box:0.2x0.1" in result.stdout
     assert "not determined" not in result.stdout
     value = float(result.stdout.split("The friction coefficient is ")[1].split()[0])
     assert value == pytest.approx(puck.friction, rel=0.02)
-    again = CliRunner().invoke(main, ["simulate", "--fit", str(saved), "--json"])
+    again = invoke("simulate", "--fit", saved, "--json")
     run = pt.fit(pt.read_tracks(file), pt.Puck(base=puck.base, height=puck.height)).simulate()
     assert json.loads(again.stdout)["stop_position"] == pytest.approx(run.stop_position, rel=1e-12)
-    prior = CliRunner().invoke(main, [*words[:4], "--prior", "height=0.04"])
+    prior = invoke(*words[:4], "--prior", "height=0.04")
     assert prior.exit_code and "prior of height must be a value and a standard" in prior.stderr
     few = tmp_path / "few.csv"
     few.write_text("".join(file.read_text().splitlines(keepends=True)[:6]))
-    short = CliRunner().invoke(main, ["fit", str(few), "--radius", "0.1"])
+    short = invoke("fit", few, "--radius", "0.1")
     assert short.exit_code and "--noise 0.0003,0.005" in short.stderr
-    both = CliRunner().invoke(main, [*words, "--pressure", "hertz"])
+    both = invoke(*words, "--pressure", "hertz")
     assert both.exit_code and "round pucks" in both.stderr

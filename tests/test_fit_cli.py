@@ -8,16 +8,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 
 TIMES = np.arange(100) / 60.0
-
-
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(main, [str(one) for one in arguments])
 
 
 @pytest.fixture(scope="module")
@@ -35,14 +30,14 @@ def film(tmp_path_factory):
 
 def test_a_film_becomes_numbers_a_file_a_picture_and_a_run(film, tmp_path):
     out, picture = tmp_path / "fit.json", tmp_path / "fit.png"
-    done = run("fit", film, "--radius", 0.0381, "-o", out, "--plot", picture, "--hold-out", 0.3)
+    done = invoke("fit", film, "--radius", 0.0381, "-o", out, "--plot", picture, "--hold-out", 0.3)
     assert done.exit_code == 0, done.output
     assert "The friction coefficient is 0.1" in done.stdout
     assert "held out" in done.stdout and "95 %" in done.stdout
     assert picture.read_bytes()[1:4] == b"PNG"
     saved = json.loads(out.read_text())
     assert saved["numbers"]["friction"]["value"] == pytest.approx(0.15, rel=1e-3)
-    again = run("simulate", "--fit", out, "--json")
+    again = invoke("simulate", "--fit", out, "--json")
     assert again.exit_code == 0, again.output
     told = json.loads(again.stdout)
     assert told["launch_velocity"] == pytest.approx([1.5, 0.4], abs=5e-3)
@@ -50,20 +45,20 @@ def test_a_film_becomes_numbers_a_file_a_picture_and_a_run(film, tmp_path):
 
 
 def test_json_and_known_numbers(film):
-    done = run("fit", film, "--radius", 0.0381, "--height", 0.0254, "--json")
+    done = invoke("fit", film, "--radius", 0.0381, "--height", 0.0254, "--json")
     told = json.loads(done.stdout)
     assert told["numbers"]["friction"]["how"] == "found"
     assert told["numbers"]["height"]["how"] == "known"
     assert told["numbers"]["delta"]["how"] == "follows"
-    held = run("fit", film, "--radius", 0.0381, "--fix", "delta=0.2", "--prior", "friction=0.2:0.5",
-               "--start", "friction=0.3", "--bound", "friction=0.01:1", "--noise", "0.0003,0.005",
-               "--json")  # fmt: skip
+    held = invoke("fit", film, "--radius", 0.0381, "--fix", "delta=0.2", "--prior",
+                  "friction=0.2:0.5", "--start", "friction=0.3", "--bound", "friction=0.01:1",
+                  "--noise", "0.0003,0.005", "--json")  # fmt: skip
     assert held.exit_code == 0, held.output
     assert json.loads(held.stdout)["noise"] == [0.0003, 0.005]
 
 
 def test_what_is_not_determined_is_said(film):
-    done = run("fit", film, "--radius", 0.0381, "--free", "friction,gravity,height")
+    done = invoke("fit", film, "--radius", 0.0381, "--free", "friction,gravity,height")
     assert done.exit_code == 0
     assert "not determined" in done.stdout and "Measure one of them" in done.stdout
 
@@ -101,7 +96,7 @@ def test_what_is_not_determined_is_said(film):
     ],
 )
 def test_a_refusal_is_a_sentence(film, arguments, words):
-    done = run("fit", film, *arguments)
+    done = invoke("fit", film, *arguments)
     assert done.exit_code == 2
     assert words in done.stderr and "Traceback" not in done.stderr
 
@@ -109,22 +104,22 @@ def test_a_refusal_is_a_sentence(film, arguments, words):
 def test_files_are_kept_and_others_refused(film, tmp_path):
     out = tmp_path / "fit.json"
     out.write_text("mine")
-    done = run("fit", film, "--radius", 0.0381, "-o", out)
+    done = invoke("fit", film, "--radius", 0.0381, "-o", out)
     assert done.exit_code == 1 and out.read_text() == "mine"
     for text in ("mine", "[]", '{"kind": "puck-tables fit 1"}', "[" * 10**5):
         out.write_text(text)
-        done = run("simulate", "--fit", out)
+        done = invoke("simulate", "--fit", out)
         assert done.exit_code == 2 and "no file of puck fit" in done.stderr, text
     out.write_text('{"kind": "puck-tables fit 9"}')
-    assert "reads puck-tables fit 1: fit again" in run("simulate", "--fit", out).stderr
-    assert run("simulate", "--fit", out, "--v0", "1,0").exit_code == 2
-    assert run("simulate", "--track", "1", "--v0", "1,0").exit_code == 2
+    assert "reads puck-tables fit 1: fit again" in invoke("simulate", "--fit", out).stderr
+    assert invoke("simulate", "--fit", out, "--v0", "1,0").exit_code == 2
+    assert invoke("simulate", "--track", "1", "--v0", "1,0").exit_code == 2
 
 
 def test_a_number_at_its_bound_has_no_error(film, tmp_path):
     files = tmp_path / "fit.json", tmp_path / "fit.h5"
     for out in files:
-        done = run("fit", film, "--radius", 0.0381, "--bound", "friction=0.16:0.3", "-o", out)
+        done = invoke("fit", film, "--radius", 0.0381, "--bound", "friction=0.16:0.3", "-o", out)
         assert done.exit_code == 0, done.output
     shown = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if " " in line)
     for name in ("friction", "decel", "height"):  # the others follow from it
@@ -146,14 +141,14 @@ def test_walls_and_rows_are_read(tmp_path: Path):
     saved = str(tmp_path / "run.csv")
     words = ["--v0", "2,0.3", "--w0", "40", "--radius", "0.0381"]
     words += ["--height", "0.0254", "--friction", "0.15"]
-    command = CliRunner().invoke(main, ["simulate", *words, "--frames", "60", "-o", saved])
+    command = invoke("simulate", *words, "--frames", "60", "-o", saved)
     assert command.exit_code == 0, command.stderr
     for option in (["--rows", "1.0,-0.2"], ["--wall", "9,0:9,2"]):
-        found = CliRunner().invoke(main, ["fit", saved, "--radius", "0.0381", *option])
+        found = invoke("fit", saved, "--radius", "0.0381", *option)
         assert found.exit_code == 0, found.stderr
         value = found.stdout.split("The friction coefficient is ")[1].split()[0]
         assert float(value) == pytest.approx(0.15, rel=1e-6)
-    wrong = CliRunner().invoke(main, ["fit", saved, "--radius", "0.0381", "--rows", "1.0"])
+    wrong = invoke("fit", saved, "--radius", "0.0381", "--rows", "1.0")
     assert (
         wrong.exit_code and "rows must be y in m of the first and of the last line" in wrong.stderr
     )

@@ -8,6 +8,7 @@ import film_judge
 import numpy as np
 import pytest
 from drawn_films import KINDS, cut, drawn, summed, wrong
+from rarely import thorough
 
 import puck_tables as pt
 from puck_tables.fitting.identifiability import taken_for_granted
@@ -31,7 +32,7 @@ def cases() -> list[pytest.param]:
     return [
         pytest.param(kind, seed, marks=[] if seed == 1 and kind in quick else pytest.mark.thorough)
         for kind in KINDS for seed in (1, 3)
-    ] + [pytest.param("sloped unmarked", 225, marks=pytest.mark.thorough)]  # fmt: skip
+    ] + [thorough("sloped unmarked", 225)]  # fmt: skip
 
 
 @pytest.mark.parametrize(("kind", "seed"), cases())
@@ -76,9 +77,7 @@ def test_nothing_wrong_is_called_determined_in_250_films(kind):
         assert complaints <= 1
 
 
-@pytest.mark.parametrize(
-    "seed", [8, *(pytest.param(n, marks=pytest.mark.thorough) for n in (5, 7))]
-)
+@pytest.mark.parametrize("seed", [8, *map(thorough, (5, 7))])
 def test_no_good_frame_of_few_is_left_out_and_a_stray_is(seed):
     """What is left out must not make the noise less than it is, by which more would be left out."""
     film = drawn("few", 200 + seed)
@@ -90,7 +89,7 @@ def test_no_good_frame_of_few_is_left_out_and_a_stray_is(seed):
     assert 0.0 < stray.outliers < 0.1 and wrong(film, stray) == {}
 
 
-@pytest.mark.parametrize("seed", [2, pytest.param(5, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("seed", [2, thorough(5)])
 def test_a_start_at_the_truth_is_followed(seed):
     """At the noise that is told, of few frames between which the puck turns more than half."""
     film = drawn("few", seed)
@@ -101,7 +100,7 @@ def test_a_start_at_the_truth_is_followed(seed):
     assert found.launch().spin == pytest.approx(film.truth["launch_spin"], rel=0.05)
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("seed", [1, thorough(2)])
 def test_spins_are_slow_unless_that_is_excluded_in_joint_fits_too(seed):
     """Two pucks on a floor of hardly any friction, where whole turns a frame are hardly told."""
     rng = np.random.default_rng([9, seed])
@@ -128,9 +127,7 @@ def test_frames_are_left_out_where_a_hand_touches_and_that_is_said():
     assert "--keep-all" in found.cut_off and "friction" in found.cut_off
 
 
-@pytest.mark.parametrize(
-    "how", [{"keep_all": True}, pytest.param({"since": -1.0}, marks=pytest.mark.thorough)]
-)
+@pytest.mark.parametrize("how", [{"keep_all": True}, thorough({"since": -1.0})])
 def test_frames_that_a_hand_touches_are_kept_if_asked(how):
     film = drawn("hand", 2)
     kept = pt.fit(film.track, film.puck, **how)
@@ -146,7 +143,7 @@ def test_what_no_motion_comes_near_determines_nothing():
     assert not found.launch().numbers["launch_vx"].determined
 
 
-@pytest.mark.parametrize("seed", [1, pytest.param(4, marks=pytest.mark.thorough)])
+@pytest.mark.parametrize("seed", [1, thorough(4)])
 def test_a_table_out_of_level_is_named_or_said_with_its_size(seed):
     """A slide straight down, and one that spins, on a table out of level by half a degree."""
     rng = np.random.default_rng([35, 1, seed])

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from rarely import thorough
 
 import puck_tables as pt
 from puck_tables.film.film import marks_of_one
@@ -150,9 +151,7 @@ def test_a_number_on_its_bound_is_named():
     assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
 
 
-@pytest.mark.parametrize(
-    "bounds", [pytest.param((3.0, 9.0), marks=pytest.mark.thorough), (1.0, 2.0)]
-)
+@pytest.mark.parametrize("bounds", [thorough((3.0, 9.0)), (1.0, 2.0)])
 def test_bounds_of_a_base_that_lifts_hold_the_start(bounds):
     found = pt.fit(TRACK, PUCK, bounds={"delta": bounds})["delta"]
     assert found.value == pytest.approx(bounds[0], abs=1e-3) and found.at_bound

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables.plot.fit_page import page
@@ -96,7 +95,7 @@ def test_python_and_the_command_write_the_same(tmp_path: Path, monkeypatch):
     rows = [f"{a!r},{1.2 * a - 0.7 * a * a!r}" for a in t.tolist()]
     Path("a.csv").write_text("t [s],s [m]\n" + "\n".join(rows))
     words = ["fit", "a.csv", "--noise", "0.0005", "--report"]
-    said = CliRunner().invoke(main, [*words, "b.html"])
+    said = invoke(*words, "b.html")
     assert said.exit_code == 0 and "wrote b.html" in said.stderr
     result = pt.fit(pt.read_tracks("a.csv"), pt.Puck(0.04), free="friction", noise=(5e-4, None))
     Path("c.html").write_text("before")
@@ -109,7 +108,7 @@ def test_python_and_the_command_write_the_same(tmp_path: Path, monkeypatch):
                 for n in ("b.html", "c.html"))  # fmt: skip
     assert one == two and one.startswith("<!DOCTYPE html>")
     for name, message in (("b.html", "exists already"), ("b.txt", ".html"), ("a.csv", "")):
-        again = CliRunner().invoke(main, [*words, name])
+        again = invoke(*words, name)
         assert again.exit_code != 0 and message in again.stderr
     assert Path("a.csv").read_text().startswith("t [s]")
 

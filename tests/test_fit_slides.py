@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 
@@ -81,7 +80,7 @@ def test_errors_and_coverage_of_slides_along_a_line():
 
 
 def command(*words: str):
-    return CliRunner().invoke(main, ["fit", *words])
+    return invoke("fit", *words)
 
 
 def gates(path: Path, f: float, unit: str, more: str = ",flag [cm],distance [cm]") -> str:

@@ -48,9 +48,7 @@ def judged(law: str, delta: float, gyration: float, u: float, tol: float) -> Non
         (("uniform", 2.0, 8.0), 7.4e-9, 1e-7),
     ]),
 )  # fmt: skip
-def test_next_to_pure_motions_of_much_and_little_inertia(
-    puck: tuple[str, float, float], phi: float, tol: float
-):
+def test_next_to_pure_motions_of_much_and_little_inertia(puck, phi, tol):
     """A puck of much inertia slides to a crawl with hardly any spin, and then spins for long."""
     judged(*puck, math.log(math.tan(phi)), tol)
 

@@ -135,10 +135,7 @@ def test_numbers_of_a_law_are_ranges():
     ("law", "words"),
     [
         ("stribeck", "a law by name is a table, floor.law.kind = 'stribeck'"),
-        (
-            {"kind": "stribek", "static": 0.1},
-            r"one of curling, power, stribeck .did you mean 'str",
-        ),
+        ({"kind": "stribek", "static": 0.1}, r"one of curling, power, stribeck .did you mean 'str"),
         ({"static": 0.1}, "floor.law.kind = None: must be one of"),
         ({**STRIBECK, "statik": 0.1}, "floor.law.statik: no such entry"),
         ({**STRIBECK, "static": -0.1}, "floor.law.static = -0.1: must be a number >= 0"),

@@ -16,11 +16,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from hostile import doors, hostile
 from hypothesis import given
 from hypothesis import strategies as st
-from puck_tables.cli.main import main
 from pucks import aim, simulate
 
 from puck_tables import resultants, states, stop
@@ -57,9 +56,7 @@ def test_stops(vx: float, vy: float, w0: float, delta: float, decel: float, radi
 
 
 @given(number, number, number, height, positive, positive, st.lists(number, min_size=0, max_size=4))
-def test_states(
-    vx: float, vy: float, w0: float, delta: float, decel: float, radius: float, times: list[float]
-):
+def test_states(vx, vy, w0, delta, decel, radius, times):
     puck = {"delta": delta, "decel": decel, "radius": radius}
     try:
         found = states((vx, vy), w0, times, **puck)
@@ -73,9 +70,7 @@ def test_states(
 
 
 @given(number, number, height, positive, st.one_of(st.none(), number), st.one_of(st.none(), number))
-def test_aims(
-    x: float, y: float, delta: float, decel: float, w0: float | None, max_speed: float | None
-):
+def test_aims(x, y, delta, decel, w0, max_speed):
     try:
         found = aim((x, y), delta=delta, decel=decel, spin=w0, max_speed=max_speed, count=2)
     except PuckError as error:
@@ -93,9 +88,7 @@ def test_aims(
 @given(
     number, number, number, height, positive, positive, st.sampled_from([1e-13, 1e-9, 1e-3, 2.0])
 )
-def test_trajectories(
-    vx: float, vy: float, w0: float, delta: float, decel: float, radius: float, accuracy: float
-):
+def test_trajectories(vx, vy, w0, delta, decel, radius, accuracy):
     puck = {"delta": delta, "decel": decel, "radius": radius, "exact": True}
     try:
         run = simulate((vx, vy), w0, **puck, tol=accuracy, frames=5)
@@ -119,16 +112,7 @@ def test_resultants(phi: float, delta: float):
 
 
 OPTIONS = {
-    "simulate": [
-        "--v0",
-        "--w0",
-        "--delta",
-        "--radius",
-        "--decel",
-        "--times",
-        "--tol",
-        "--mass",
-    ],
+    "simulate": ["--v0", "--w0", "--delta", "--radius", "--decel", "--times", "--tol", "--mass"],
     "sweep": ["--v0", "--w0", "--speed", "--delta", "--radius", "--height", "--tol"],
     "aim": ["--target", "--w0", "--speed", "--time", "--max-speed", "--max-spin", "--delta"],
 }
@@ -151,7 +135,7 @@ def test_command_lines(line: list[str]):
     with tempfile.TemporaryDirectory() as folder:
         if "-o" in line:
             line[line.index("-o") + 1] = str(Path(folder) / "out.csv")
-        ended = CliRunner().invoke(main, line)
+        ended = invoke(*line)
         assert ended.exit_code in (0, 1, 2), (line, ended.exception)
         assert ended.exception is None or isinstance(ended.exception, SystemExit), line
         assert "Traceback" not in ended.stderr

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import thorough
 
 import puck_tables as pt
 
@@ -24,9 +25,7 @@ SLOW = ("Curling", "PushToPose")  # a stone by the law of ice, a finger that pus
 QUICK = [name for name in GAMES if name not in SLOW]
 
 
-@pytest.mark.parametrize(
-    "name", [*QUICK, *(pytest.param(name, marks=pytest.mark.thorough) for name in SLOW)]
-)
+@pytest.mark.parametrize("name", [*QUICK, *map(thorough, SLOW)])
 @pytest.mark.filterwarnings("error")
 def test_each_game_passes_the_check_of_gymnasium(name: str):
     env = gymnasium.make(f"puck_tables/{name}-v0", render_mode="rgb_array")

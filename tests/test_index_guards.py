@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from rarely import nightly, thorough
 
 from puck_tables import SpeedLaw, Table
 from puck_tables.contact.laws import law_of
@@ -107,21 +108,14 @@ def body_stops() -> np.ndarray:
     return stop_section_for(body_of(law_of("uniform"), 0.5, 0.9), 1e-4).spline.coefficients
 
 
-def look_up_in_a_process(**environment: str) -> None:
+@pytest.mark.parametrize(
+    "environment", [thorough({}), nightly({"NUMBA_BOUNDSCHECK": "1", "NUMBA_DISABLE_JIT": "0"})]
+)
+def test_no_look_up_leaves_its_table(environment: dict[str, str]):
+    """The second time with numba's test of every index, which raises."""
     code = "import test_index_guards as t; t.look_up_everything()"
     ended = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True,
         env={**os.environ, "PYTHONPATH": os.path.dirname(__file__), **environment},
     )  # fmt: skip
     assert ended.returncode == 0, ended.stderr[-2000:]
-
-
-@pytest.mark.thorough
-def test_no_look_up_leaves_its_table():
-    look_up_in_a_process()
-
-
-@pytest.mark.nightly
-def test_no_look_up_leaves_its_table_by_the_compilers_own_check():
-    """The same with numba's test of every index, which raises."""
-    look_up_in_a_process(NUMBA_BOUNDSCHECK="1", NUMBA_DISABLE_JIT="0")

@@ -199,9 +199,7 @@ def test_a_folder_below_one_like_tmp_is_used(tmp_path: Path):
         make_private(tmp_path)
 
 
-def test_the_users_cache_is_judged_alike(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
-):
+def test_the_users_cache_is_judged_alike(tmp_path, monkeypatch, request):
     from click.testing import CliRunner
     from puck_tables.cli.main import main
     from puck_tables.cli.tables import kept_files

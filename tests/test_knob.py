@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from mpmath import mp
-from puck_tables.cli.main import main
 from pucks import simulate, sweep
+from rarely import nightly
 
 from puck_tables import Table, stop
 from puck_tables.accuracy.method_errors import (
@@ -88,7 +88,11 @@ def test_nor_with_a_method_of_one_s_choice(starts: dict[str, np.ndarray], method
         assert errors(part, result.stop_time, result.stop_position).max() <= tol
 
 
-def check_trajectories(starts: dict[str, np.ndarray], tol: float, numbers: range) -> None:
+@pytest.mark.parametrize("tol", TOLERANCES)
+@pytest.mark.parametrize("step", [10, nightly(1)])
+def test_no_trajectory_is_outside_the_tolerance(starts, step, tol):
+    """Every tenth start, its own at each tolerance; or all of them."""
+    numbers = range((int(-np.log10(tol)) - 3) % step, 2000, step)
     one = launched(starts, seed=99)
     for n in numbers:
         run = simulate(
@@ -98,18 +102,6 @@ def check_trajectories(starts: dict[str, np.ndarray], tol: float, numbers: range
         single = {name: values[n] for name, values in one.items()}
         error = errors(single, run.stop_time, np.array(run.stop_position))
         assert error <= tol, (n, starts["u"][n], starts["delta"][n])
-
-
-@pytest.mark.parametrize("tol", TOLERANCES)
-def test_no_trajectory_is_outside_the_tolerance(starts: dict[str, np.ndarray], tol: float):
-    """Every tenth start, its own at each tolerance."""
-    check_trajectories(starts, tol, range(int(-np.log10(tol)) - 3, 2000, 10))
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("tol", TOLERANCES)
-def test_no_trajectory_of_all_is_outside_the_tolerance(starts: dict[str, np.ndarray], tol: float):
-    check_trajectories(starts, tol, range(2000))
 
 
 def test_the_coarsest_cut_is_not_within_the_finest_tolerance(starts: dict[str, np.ndarray]):
@@ -163,7 +155,7 @@ def test_the_shipped_front_is_read_and_damage_is_named():
 
 def test_explain():
     def puck(*arguments: str):
-        return CliRunner().invoke(main, arguments)
+        return invoke(*arguments)
 
     result = puck("sweep", "--w0", "1", "--speed", "1", "--tol", "1e-7", "--explain")
     assert result.exit_code == 0

@@ -117,8 +117,7 @@ FLOORS: dict[str, tuple[pt.Floor, Callable[..., np.ndarray]]] = {
     ),
     "patches": (
         pt.Floor(
-            law=ICE,
-            patches=[pt.Patch(STEEP, corners=HOOK), pt.Patch(0.2, (-0.05, -0.02), 0.04)],
+            law=ICE, patches=[pt.Patch(STEEP, corners=HOOK), pt.Patch(0.2, (-0.05, -0.02), 0.04)]
         ),
         lambda x, y, u: np.where(
             np.hypot(x + 0.05, y + 0.02) < 0.04, 0.2, np.where(in_hook(x, y), STEEP(u), ICE(u))
@@ -138,7 +137,7 @@ def in_hook(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("name", ["round", "box"])
 def test_friction_is_that_of_a_grid_over_the_base(name: str, floor: str) -> None:
     puck = pt.Puck(**PUCKS[name], gravity=1.0, mass=1.0)
-    states, n = drawn(3, 0.03), 900
+    states, n = drawn(3, 0.03), 450
     found = friction_at(pt.Scene(puck, FLOORS[floor][0], FAST), states)
     side = 0.05 * (2.0 * np.arange(n) + 1.0 - n) / n
     px, py = np.meshgrid(side, side)
@@ -155,7 +154,7 @@ def test_friction_is_that_of_a_grid_over_the_base(name: str, floor: str) -> None
         pull = np.stack([np.zeros(3), -ex @ rows.T * 0.015, -ey @ rows.T * 0.015])
         load = np.linalg.solve(rows @ rows.T + pull, [1.0, 0.0, 0.0]) @ rows
         wanted = -np.array([load @ ex, load @ ey, load @ (rx * ey - ry * ex)])
-        assert np.abs((forces - wanted) / [1.0, 1.0, 0.05]).max() < 2e-4
+        assert np.abs((forces - wanted) / [1.0, 1.0, 0.05]).max() < 5e-5
 
 
 def judged(law: Any, other: Any, border: float, until: float) -> np.ndarray:

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scenes import simulate_scene
 
 import puck_tables as pt
@@ -224,7 +223,7 @@ def test_what_is_printed_has_its_units():
 def test_the_command(tmp_path: Path):
     out, picture = tmp_path / "surface.csv", tmp_path / "surface.png"
     command = ["limit-surface", "--delta", "0", "--points", "9", "-o", str(out)]
-    done = CliRunner().invoke(main, [*command, "--plot", str(picture)])
+    done = invoke(*command, "--plot", picture)
     assert done.exit_code == 0, done.stderr
     assert picture.stat().st_size > 10_000
     said = str(pt.Puck.similar(delta=0.0).limit_surface(9))
@@ -232,7 +231,7 @@ def test_the_command(tmp_path: Path):
     rows = out.read_text().splitlines()
     assert rows[0].startswith("slip_angle[rad],force_x[N],force_y[N],torque[N m]")
     assert len(rows) == 10
-    printed = CliRunner().invoke(main, command[:-2])
+    printed = invoke(*command[:-2])
     assert printed.stdout.splitlines() == rows
-    few = CliRunner().invoke(main, ["limit-surface", "--points", "2"])
+    few = invoke("limit-surface", "--points", "2")
     assert few.exit_code == 2 and "'--points': 2 is not in the range 5<=x" in few.stderr

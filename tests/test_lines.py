@@ -7,8 +7,7 @@ import pickle
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables import Floor, InputError, Launch, Line, Puck, Scene, Wall
@@ -171,5 +170,5 @@ def test_lines_of_a_file_are_reported(tmp_path):
         "[puck]\nradius = 0.05\nfriction = 0.1\n[launch]\nvelocity = [1.5, 0.0]\n"
         '[[line]]\nstart = [0.5, -1.0]\nend = [0.5, 1.0]\nname = "hog line"\n'
     )
-    said = CliRunner().invoke(main, ["simulate", "--scene", str(tmp_path / "slide.toml")])
+    said = invoke("simulate", "--scene", tmp_path / "slide.toml")
     assert "line (hog line) at 0.38" in said.stdout

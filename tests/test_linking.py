@@ -207,9 +207,7 @@ _SAYS = (
         ("sys.modules['puck_tables.kernels.kept_code'] = None", "*.nbc"),
     ],
 )
-def test_a_numba_without_its_private_parts_compiles_the_same(
-    without: str, kept: str, tmp_path: Path
-):
+def test_a_numba_without_its_private_parts_compiles_the_same(without, kept, tmp_path):
     said = []
     for number, line in enumerate(("", without, without)):
         folder = tmp_path / str(bool(number))

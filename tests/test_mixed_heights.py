@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from any_puck import stops_by_truth
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from pucks import sweep
 
 from puck_tables import Puck, Table, states, stop
@@ -82,9 +81,7 @@ def test_a_mixed_map_is_the_stops_of_its_launches():
     cut = sweep(spins, [0.5, 1.0], delta=delta, tol=1e-6, chunk=3)
     for name in COLUMNS:
         np.testing.assert_array_equal(getattr(made, name), getattr(cut, name))
-    said = CliRunner().invoke(
-        main, ["sweep", "--w0", "1", "--delta", "0.9:1.1:3", "--explain", "--tol", "1e-5"]
-    )
+    said = invoke("sweep", "--w0", "1", "--delta", "0.9:1.1:3", "--explain", "--tol", "1e-5")
     assert said.exit_code == 0
     assert "2 of 3 launches, of heights delta <= 1:" in said.stderr
 

@@ -66,9 +66,7 @@ def test_accuracy_asked_is_reached_and_the_estimate_is_honest(method: str, accur
 
 @pytest.mark.parametrize("start", [((1.0, 0.0), 5.0), ((0.3, -0.4), -0.7), ((-1.0, 2.0), 1.0)])
 @pytest.mark.parametrize("delta", [0.0, 0.5, 1.0])
-def test_states_against_scipy_on_textbook_formulas(
-    start: tuple[tuple[float, float], float], delta: float
-):
+def test_states_against_scipy_on_textbook_formulas(start, delta):
     v0, w0 = start
     stop_time = simulate(v0, w0, delta=delta).stop_time
     times = np.linspace(0.0, 0.95 * stop_time, 40)
@@ -221,10 +219,7 @@ def numbers(largest: float) -> st.SearchStrategy[float]:
     decel=st.floats(0.01, 100),
     radius=st.floats(0.01, 10),
 )
-def test_symmetries(
-    vx: float, vy: float, w: float, delta: float, angle: float, scale: float, decel: float,
-    radius: float,
-):  # fmt: skip
+def test_symmetries(vx, vy, w, delta, angle, scale, decel, radius):
     options = {"delta": delta, "decel": decel, "radius": radius, "tol": 1e-9}
     base = simulate((vx, vy), w, frames=20, **options)
     q = math.hypot(vx, vy, radius * w)

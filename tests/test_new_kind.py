@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import SpeedLaw, Table
 from puck_tables._core import lazy
@@ -78,9 +76,7 @@ def told(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
-    seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(seed, tmp_path, monkeypatch):
     rng = np.random.default_rng(seed)
     pitch, top = rng.uniform(1.0, 5.0), rng.uniform(0.1, 9.0)
     table = Table.build(complex(pitch, top), 1e-5)
@@ -91,13 +87,13 @@ def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
     assert isinstance(loaded, WaveTable)
     assert (loaded.pitch, loaded.law) == (pitch, table.law)
     np.testing.assert_array_equal(loaded.values, table.values)
-    told = CliRunner().invoke(main, ["info", str(path)])
+    told = invoke("info", path)
     assert "holds       waves (wave); uniform pressure" in told.stdout
-    assert CliRunner().invoke(main, ["validate", str(path)]).exit_code == 0
+    assert invoke("validate", path).exit_code == 0
     bent = table.values.copy()
     bent[rng.integers(1, len(bent) - 1, 9)] += 1e-4
     replace(table, values=bent).save(path, overwrite=True)
-    assert CliRunner().invoke(main, ["validate", str(path)]).exit_code == 3
+    assert invoke("validate", path).exit_code == 3
 
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     builds: list[float] = []
@@ -110,4 +106,4 @@ def test_a_new_kind_is_built_saved_loaded_told_judged_and_kept(
         kept = fetch("wave", {"pitch": asked}, partial(build, asked))
         assert kept.pitch == asked
     assert builds == [pitch, 2.0 * pitch]
-    assert CliRunner().invoke(main, ["tables"]).stdout.count("waves") == 2
+    assert invoke("tables").stdout.count("waves") == 2

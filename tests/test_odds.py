@@ -30,12 +30,13 @@ def test_a_slide_that_must_not_go_over_an_edge():
     aims = np.linspace(1.1, 1.3, 2001)
     chances = [chance_beside_an_edge(aim, 0.7, 0.82, 0.05) for aim in aims.tolist()]
     exact = chance_beside_an_edge(found.launch_speed[0], 0.7, 0.82, 0.05)
-    assert odds.found.low - 0.01 < exact < odds.found.high + 0.01
+    assert odds.nominal.low - 0.01 < exact < odds.nominal.high + 0.01
     assert odds.best.low - 0.01 < max(chances) < odds.best.high + 0.01
     assert max(chances) - exact > 0.07  # else there is nothing to be seen
     assert math.hypot(*odds.velocity) == pytest.approx(aims[int(np.argmax(chances))], abs=0.02)
     assert (odds.spin, odds.failed) == (0.0, 0)
-    assert odds == found.odds(speed=0.05, within=0.1, count=4000, seed=3)
+    one, two = (found.odds(speed=0.05, within=0.1, count=400, seed=3) for _ in range(2))
+    assert one == two
 
 
 def test_a_man_into_a_pocket_beside_runs_of_their_own():
@@ -55,8 +56,8 @@ def test_a_man_into_a_pocket_beside_runs_of_their_own():
         fallen.append(("pocket", "shot", "pocket 0") in events)
     share = float(np.mean(fallen))
     margin = 4.0 * math.sqrt(0.25 / 100)
-    assert odds.found.value == pytest.approx(share, abs=margin)
-    assert odds.best.value >= odds.found.value
+    assert odds.nominal.value == pytest.approx(share, abs=margin)
+    assert odds.best.value >= odds.nominal.value
 
 
 def test_refusals():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from golden.make_scene_ends import apart, ends_of
 from random_scenes import draw
+from rarely import thorough
 
 import puck_tables as pt
 from puck_tables import Scene
@@ -79,7 +80,7 @@ def told(run: pt.results.Run, length: float) -> list[tuple[Any, ...]]:
     "first",
     [
         0,
-        pytest.param(9, marks=pytest.mark.thorough),
+        thorough(9),
         *[pytest.param(n, marks=[pytest.mark.thorough, pytest.mark.nightly]) for n in (60, 90)],
     ],
 )

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import nightly, thorough
 
 from puck_tables import Puck
 from puck_tables._core import partial_files
@@ -123,14 +124,8 @@ def fight(draw: random.Random, folder: Path) -> None:
     assert names(folder) == ["m.zarr"] and left(store) == []
 
 
-@pytest.mark.thorough
-def test_processes_on_one_store(tmp_path: Path):
-    fight(random.Random(1), tmp_path)
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("seed", range(2, 10))
-def test_many_processes_on_one_store(seed: int, tmp_path: Path):
+@pytest.mark.parametrize("seed", [thorough(1), *map(nightly, range(2, 10))])
+def test_processes_on_one_store(seed: int, tmp_path: Path):
     fight(random.Random(seed), tmp_path)
 
 
@@ -185,9 +180,7 @@ REFUSED = ("too large", "in the middle", "no table is so good", "a full disk")
 
 @pytest.mark.usefixtures("small_blocks")
 @pytest.mark.parametrize("why", REFUSED)
-def test_what_is_refused_has_replaced_nothing(
-    why: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_what_is_refused_has_replaced_nothing(why, tmp_path, monkeypatch):
     (tmp_path / "here").mkdir()
     store = tmp_path / "here" / "m.zarr"
     PUCK.sweep([1.0, 2.0], 1.0, store=store)
@@ -223,9 +216,7 @@ def test_what_is_refused_has_replaced_nothing(
 
 
 @pytest.mark.usefixtures("small_blocks")
-def test_a_store_that_replaces_another_goes_on_beside_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_store_that_replaces_another_goes_on_beside_it(tmp_path, monkeypatch):
     store = tmp_path / "m.zarr"
     PUCK.sweep(**grid(0), store=store)
     before = content(store)

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import Edge, Floor, Launch, Post, Puck, Scene, Wall
 
@@ -108,6 +107,6 @@ def test_one_that_comes_back_is_told_of_again():
     ],
 )
 def test_the_report_says_so(line: list[str]):
-    said = CliRunner().invoke(main, ["simulate", *line])
+    said = invoke("simulate", *line)
     assert said.exit_code == 0, said.stderr
     assert "carries nothing" in said.stdout

@@ -15,7 +15,7 @@ from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 from pucks import simulate, sweep
-from rarely import few
+from rarely import few, nightly, thorough
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables.chetaev.asperity_forces import asperity_curve
@@ -116,9 +116,7 @@ WORDS = {
 
 
 @pytest.mark.parametrize("name", few(4, WORDS))
-def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(
-    drawn: Any, name: str
-) -> None:
+def test_all_that_is_in_the_plane_is_labelled_and_no_legend_lies_on_a_panel(drawn, name):
     figure = drawn(simulate_scene(name))
     assert {WORDS[name], "launch"} <= words(figure)
     _legends_stand_outside(figure)
@@ -236,8 +234,8 @@ def test_the_examples_of_asperity_show_all_that_happens() -> None:
 
 
 KINDS = [
-    ".png", ".html", *(pytest.param(kind, marks=pytest.mark.thorough) for kind in (".svg", ".pdf")),
-    pytest.param(".gif", marks=pytest.mark.nightly),
+    ".png", ".html", *map(thorough, (".svg", ".pdf")),
+    nightly(".gif"),
 ]  # fmt: skip
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from test_explorer import CHROMIUM, browser, sync_api  # noqa: F401 - a fixture
 
 import puck_tables as pt
@@ -43,7 +42,7 @@ radius = 0.05
 def scene(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("played") / "two.toml"
     path.write_text(SCENE)
-    made = CliRunner().invoke(main, ["explore", "--scene", str(path), "-o", f"{path}.html"])
+    made = invoke("explore", "--scene", path, "-o", f"{path}.html")
     assert made.exit_code == 0, made.output
     return path
 

@@ -112,9 +112,7 @@ def test_they_pass_as_the_constants_are(copy: Path):
     RESTS_ON,
     ids=[f"{name}-{constant.partition(' ')[0]}" for name, constant, *_ in RESTS_ON],
 )
-def test_a_coarser_constant_fails_its_test(
-    copy: Path, name: str, constant: str, coarser: str, test: str
-):
+def test_a_coarser_constant_fails_its_test(copy, name, constant, coarser, test):
     path = copy / "puck_tables" / f"{name}.py"
     source, left = path.read_text("utf-8"), constant.partition(" = ")[0]
     assert source.count(f"\n{constant}") == 1, "the constant is another one now"

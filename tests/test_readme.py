@@ -8,9 +8,8 @@ import shlex
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
-from puck_tables.cli.main import main
 
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
 PAGES = {path.name: path for path in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]}
@@ -40,8 +39,7 @@ def console_examples(text: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(
-    "page",
-    [pytest.param(name, marks=[pytest.mark.thorough] * (name in LONG)) for name in PAGES],
+    "page", [pytest.param(name, marks=[pytest.mark.thorough] * (name in LONG)) for name in PAGES]
 )
 def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """In order, in one folder: numbers to seven digits, those of rounding size to a factor 10."""
@@ -50,7 +48,7 @@ def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
         program, *arguments = shlex.split(command)
         assert program == "puck"
         Path("run.png").unlink(missing_ok=True)
-        result = CliRunner().invoke(main, arguments)
+        result = invoke(*arguments)
         assert result.exit_code == 0, (command, result.output)
         if not output:
             continue

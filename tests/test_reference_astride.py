@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from astride_judge import Motion
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scipy.integrate import solve_ivp
 
 from puck_tables import (
@@ -156,8 +155,8 @@ def test_friction_over_epsilon_is_refused(name: str):
 
 
 def test_the_command_line_says_where_the_borders_are():
-    told = CliRunner().invoke(main, ["reference", "astride-spin"]).output
+    told = invoke("reference", "astride-spin").output
     assert "strips.borders = [0] m, strips.friction = [0.78, 0.67]" in told
-    listed = json.loads(CliRunner().invoke(main, ["reference", "--json"]).output)
+    listed = json.loads(invoke("reference", "--json").output)
     assert [one["name"] for one in listed] == [case.name for case in CASES]
     assert {*ASTRIDE} < {case.name for case in CASES}

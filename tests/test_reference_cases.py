@@ -11,6 +11,7 @@ import pytest
 from any_puck import stops_by_truth
 from base_judge import Judge
 from pucks_judge import Disc, Line, play
+from rarely import thorough
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
 
@@ -118,8 +119,7 @@ def body(name: str) -> tuple[Judge, float, float]:
     "name",
     [
         "box", "triangle",
-        *(pytest.param(n, marks=pytest.mark.thorough)
-          for n in ("box-tall", "bar", "off-centre", "three-feet")),
+        *map(thorough, ("box-tall", "bar", "off-centre", "three-feet")),
     ],
 )  # fmt: skip
 def test_bodies_by_an_independent_integrator(name: str):

@@ -124,8 +124,7 @@ def test_a_disc_on_a_turntable_that_speeds_up_by_an_independent_integrator() -> 
 
 
 @pytest.mark.parametrize(
-    ("name", "tangent", "until"),
-    [("below", 0.285, 4.0), ("at", 0.3, 2.0), ("above", 0.315, 2.0)],
+    ("name", "tangent", "until"), [("below", 0.285, 4.0), ("at", 0.3, 2.0), ("above", 0.315, 2.0)]
 )
 def test_a_box_beside_the_angle_of_its_friction(name: str, tangent: float, until: float) -> None:
     answer = reference_case(f"box-slope-{name}")

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import floor_friction, reference_case
 from puck_tables.reference.case_text import lines_of
@@ -20,7 +19,7 @@ from puck_tables.reference.case_text import lines_of
 )
 def test_json_on_stdout_has_the_columns_of_the_file(asked: list[str], tmp_path: Path):
     path = tmp_path / "a.json"
-    result = CliRunner().invoke(main, ["reference", *asked, "--json", "-o", str(path)])
+    result = invoke("reference", *asked, "--json", "-o", path)
     assert result.exit_code == 0, result.output
     told, saved = json.loads(result.stdout), json.loads(path.read_text())
     assert told["columns"] == saved["columns"]
@@ -75,9 +74,9 @@ def test_pictures_show_the_bend_and_no_rounding():
 
 
 def test_rows_left_out_are_said():
-    told = CliRunner().invoke(main, ["reference", "coin", "--friction"]).stdout.splitlines()
+    told = invoke("reference", "coin", "--friction").stdout.splitlines()
     assert told[-1].startswith("one row in 4 of 81: ") and len(told) == 2 + 21 + 1
-    whole = CliRunner().invoke(main, ["reference", "coin", "--epsilon", "0:2:20"]).stdout
+    whole = invoke("reference", "coin", "--epsilon", "0:2:20").stdout
     assert len(whole.splitlines()) == 2 + 20
 
 

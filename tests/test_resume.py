@@ -60,9 +60,7 @@ def made(arguments: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("base", "change"), CHANGES)
-def test_a_store_is_refused_when_any_argument_changed(
-    base: dict[str, Any], change: dict[str, Any], tmp_path: Path
-):
+def test_a_store_is_refused_when_any_argument_changed(base, change, tmp_path):
     path = tmp_path / "a.zarr"
     first = sweep(**base, store=path).load()
     whole = content(path)
@@ -153,9 +151,7 @@ def test_a_friction_law_that_changed_is_other_work():
     assert len(digests) == 2
 
 
-def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_file_that_changes_while_it_is_swept_ends_the_sweep(tmp_path, monkeypatch):
     scene, once = scene_of(tmp_path), Runs.of
 
     def changes(self: Runs, start: int, stop: int) -> Any:

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import Launch, Normal, Puck, Scene, Uniform, stop
 from puck_tables.bulk.summary import chance_of, inside_of
@@ -139,7 +138,7 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
 
     def invoked(*words: str) -> Any:
-        return CliRunner().invoke(main, ["sweep", *words])
+        return invoke("sweep", *words)
 
     spreads = ["--spread", "w0=normal:5:0.2", "--spread", "speed=uniform:0.9:1.1"]
     scene = ["--scene", "incline", "--spread", "launch.spin=normal:5:0.2"]
@@ -177,30 +176,28 @@ def test_samples_of_a_scene_on_the_command_line(tmp_path: Path, monkeypatch: pyt
     told = "Puck on an incline over launch.spin normal:5.0:0.2 rad/s: 50 at rest"
     said = set()
     for more in ([], ["-o", "s.h5"], ["--plot", "s.png"], ["-o", "s.zarr"]):
-        result = CliRunner().invoke(main, ["sweep", *words, *more])
+        result = invoke("sweep", *words, *more)
         assert result.exit_code == 0, result.stderr
         assert told in result.stderr.splitlines()
         said.add(result.stdout)
     assert len(said) == 1  # one summary, wherever the samples are kept
 
 
-def test_many_samples_of_a_store_are_not_read_unasked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_many_samples_of_a_store_are_not_read_unasked(tmp_path, monkeypatch):
     pytest.importorskip("zarr")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("puck_tables.cli.sweep.SUMMED", 10)
     words = ["sweep", "--random", "11", "--spread", "w0=normal:5:0.2", "-o", "s.zarr"]
-    quiet = CliRunner().invoke(main, words)
+    quiet = invoke(*words)
     assert (quiet.exit_code, quiet.stdout) == (0, "")
     assert "summed up only with --plot or --inside" in quiet.stderr
-    asked = CliRunner().invoke(main, [*words, "--inside", "2.2m,-16cm,10cm"])
+    asked = invoke(*words, "--inside", "2.2m,-16cm,10cm")
     assert asked.exit_code == 0, asked.stderr
     assert "ends inside (2.2, -0.16, 0.1) m" in asked.stdout and "stop_x m  " in asked.stdout
     assert "at decel = 1 m/s^2, radius = 1 m, delta = 0.5, launch" in asked.stderr
     for more in (["--inside", "2.2,-0.16,0.1"], ["--plot", "s.png"]):
         vast = [*words[:1], "--random", "1000000000", *words[3:5], "-o", "vast.zarr", *more]
-        refused = CliRunner().invoke(main, vast)
+        refused = invoke(*vast)
         assert refused.exit_code == 2, refused.stderr
         assert "--plot and --inside read a whole store" in refused.stderr
     assert not (tmp_path / "vast.zarr").exists()

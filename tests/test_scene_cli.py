@@ -6,8 +6,7 @@ import tomllib
 import numpy as np
 import pytest
 import xarray
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scenes import simulate_scene
 
 from puck_tables.scene.library import find_scene, shipped_scenes
@@ -18,36 +17,34 @@ ENDS = {
 }
 
 
-def puck(*arguments):
-    return CliRunner().invoke(main, list(arguments))
-
-
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_every_scene_that_comes_along_runs_and_its_ledger_closes(name, tmp_path):
     picture = tmp_path / "scene.png"
-    result = puck("simulate", "--scene", name, "--json", "--plot", str(picture))
+    result = invoke("simulate", "--scene", name, "--json", "--plot", picture)
     assert result.exit_code == 0, result.stderr
     told = json.loads(result.stdout)
     assert told["energy_residual"] < max(1e-8, told["scene"]["tol"])
     assert told["end"].startswith(ENDS.get(name, "at rest"))
     assert picture.stat().st_size > 10_000
-    assert puck("scene", "check", name).exit_code == 0
+    assert invoke("scene", "check", name).exit_code == 0
 
 
 def test_scenes_are_listed_and_shown():
-    listed = puck("scene", "list").stdout
+    listed = invoke("scene", "list").stdout
     assert len(listed.splitlines()) == len(shipped_scenes()) >= 9
-    assert 'title = "Puck on an incline"' in puck("scene", "show", "incline").stdout
+    assert 'title = "Puck on an incline"' in invoke("scene", "show", "incline").stdout
 
 
 def test_options_are_numbers_of_the_scene():
-    by_option = puck("simulate", "--scene", "incline", "--w0", "30", "--friction", "0.2", "--json")
+    by_option = invoke(
+        "simulate", "--scene", "incline", "--w0", "30", "--friction", "0.2", "--json"
+    )
     changes = ("--set", "launch.spin=30", "--set", "puck.friction=0.2")
-    by_set = puck("simulate", "--scene", "incline", *changes, "--json")
+    by_set = invoke("simulate", "--scene", "incline", *changes, "--json")
     assert by_option.stdout == by_set.stdout != ""
-    plain = puck("simulate", "--v0", "1,0", "--w0", "5", "--json")
-    scene = puck("simulate", "--v0", "1,0", "--w0", "5", "--set", "puck.mass=1", "--json")
+    plain = invoke("simulate", "--v0", "1,0", "--w0", "5", "--json")
+    scene = invoke("simulate", "--v0", "1,0", "--w0", "5", "--set", "puck.mass=1", "--json")
     assert json.loads(scene.stdout)["x"] == pytest.approx(
         json.loads(plain.stdout)["stop_position"][0], rel=1e-9
     )
@@ -57,7 +54,7 @@ def test_every_error_is_told_at_once(tmp_path):
     file = tmp_path / "bad.toml"
     file.write_text("[puck]\nradius = -1\nhight = 2\nfriction = 'a'\n[[wall]]\npoint=[0]\n")
     for command in (("scene", "check"), ("simulate", "--scene"), ("sweep", "--scene")):
-        result = puck(*command, str(file))
+        result = invoke(*command, file)
         assert result.exit_code == 2
         for part in ("puck.radius = -1", "puck.hight", "puck.friction", "wall[0].point", "> 0 m"):
             assert part in result.stderr
@@ -82,7 +79,7 @@ def test_every_error_is_told_at_once(tmp_path):
     ],
 )
 def test_refusals_are_one_clear_sentence(arguments, words):
-    result = puck(*arguments)
+    result = invoke(*arguments)
     assert result.exit_code == 2
     assert words in result.stderr
     assert "Traceback" not in result.stderr
@@ -90,24 +87,24 @@ def test_refusals_are_one_clear_sentence(arguments, words):
 
 def test_a_base_beside_set_is_that_of_the_scene():
     belt = ("--v0", "0,0", "--set", "floor.velocity=[0.3,0]")
-    result = puck("simulate", "--base", "box:10cmx6cm", "--friction", "0.4", *belt)
+    result = invoke("simulate", "--base", "box:10cmx6cm", "--friction", "0.4", *belt)
     assert "base box:10cmx6cm" in result.stdout and "f g = 3.92266 m/s^2" in result.stdout
     assert f"carried by the floor after {0.3 / (0.4 * 9.80665):.9g} s" in result.stdout
     for more, words in ((("--delta", "1"), "--base and --delta clash"), ((), "0.3 s")):
-        result = puck("simulate", "--base", "box:10cmx6cm", *more, *belt)
+        result = invoke("simulate", "--base", "box:10cmx6cm", *more, *belt)
         assert words in result.stdout + result.stderr
 
 
 def test_above_the_friction_angle_the_run_ends_at_the_time_asked():
     steep = ("--set", "floor.slope=0.5", "--set", "time=3")
-    result = puck("simulate", "--scene", "incline", *steep)
+    result = invoke("simulate", "--scene", "incline", *steep)
     assert "time is up after 3 s" in result.stdout
 
 
 def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
     file = tmp_path / "map.h5"
     ranges = ("--set", "floor.slope=0:0.1:3", "--w0", "0:60:4")
-    result = puck("sweep", "--scene", "incline", *ranges, "-o", str(file))
+    result = invoke("sweep", "--scene", "incline", *ranges, "-o", file)
     assert result.exit_code == 0, result.stderr
     assert list(tmp_path.iterdir()) == [file]
     with xarray.open_dataset(file, engine="h5netcdf") as data:
@@ -120,7 +117,7 @@ def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
         assert float(data["end_time"][1, 2]) == pytest.approx(single.end_time, abs=far)
         far *= single.speed_scale
         assert float(data["x"][1, 2]) == pytest.approx(single.last["x"], abs=far)
-    table = puck("sweep", "--scene", "incline", *ranges)
+    table = invoke("sweep", "--scene", "incline", *ranges)
     assert table.stdout.splitlines()[0].startswith("floor_slope[rad],launch_spin[rad/s],x[m]")
     assert len(table.stdout.splitlines()) == 13
     assert "12 at rest" in table.stderr
@@ -129,10 +126,8 @@ def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):
 def test_states_of_a_scene_as_files(tmp_path):
     for ending in (".h5", ".csv", ".jsonl"):
         file = tmp_path / f"run{ending}"
-        assert (
-            puck("simulate", "--scene", "incline", "--frames", "5", "-o", str(file)).exit_code == 0
-        )
-        again = puck("simulate", "--scene", "incline", "-o", str(file))
+        assert invoke("simulate", "--scene", "incline", "--frames", "5", "-o", file).exit_code == 0
+        again = invoke("simulate", "--scene", "incline", "-o", file)
         assert again.exit_code == 1
         assert "exists" in again.stderr
     assert len((tmp_path / "run.csv").read_text().splitlines()) == 6
@@ -147,19 +142,19 @@ def test_states_of_a_scene_as_files(tmp_path):
 def test_the_curve_of_an_asperity_is_the_friction_law_of_a_scene(tmp_path):
     law = tmp_path / "rough.csv"
     rough = ("--amplitude", "1e-5", "--wavelength", "1e-3", "--speeds", "0:0.2:21")
-    assert puck("asperity", *rough, "--law", str(law)).exit_code == 0
+    assert invoke("asperity", *rough, "--law", law).exit_code == 0
     scene = tmp_path / "rough.toml"
     scene.write_text(
         "[puck]\nradius = 0.01\n[floor]\nlaw = 'rough.csv'\n"  # beside the scene
         "[launch]\nvelocity = [0.09, 0.0]\nspin = 9.0\n"
     )
-    result = puck("simulate", "--scene", str(scene), "--json", "--explain")
+    result = invoke("simulate", "--scene", scene, "--json", "--explain")
     assert result.exit_code == 0, result.stderr
     told = json.loads(result.stdout)
     assert (told["end"], told["energy_residual"] < 1e-8) == ("at rest", True)
     assert "integrated from impact to impact: friction law" in result.stderr
     slow = f"{0.9 * 2 * np.pi * 1e-5 / 1e-3}"  # Coulomb's a/b is a bound for the slow ones
     assert told["end_time"] < 0.18 / (float(slow) * 9.80665)
-    fast = puck("simulate", "--scene", str(scene), "--set", "launch.velocity=[0.3,0]")
+    fast = invoke("simulate", "--scene", scene, "--set", "launch.velocity=[0.3,0]")
     assert fast.exit_code == 2
     assert "0.2 m/s" in fast.stderr

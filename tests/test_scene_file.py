@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scenes import simulate_scene, sweep_scene
 
 from puck_tables import InputError, Scene
@@ -71,7 +70,7 @@ def test_a_run_has_its_scene_however_long(tmp_path: Path) -> None:
 
 
 def test_json_and_report_carry_inputs_and_units() -> None:
-    told = CliRunner().invoke(main, ["simulate", "--scene", "air-hockey", "--json"])
+    told = invoke("simulate", "--scene", "air-hockey", "--json")
     run = json.loads(told.stdout)
     assert run["scene"]["wall"][1]["restitution"] == 0.85
     units = run["units"]
@@ -79,7 +78,7 @@ def test_json_and_report_carry_inputs_and_units() -> None:
     numbers = {name for name, value in run.items() if isinstance(value, float)}
     assert numbers - {"energy_residual", "error_estimate"} <= set(units)
     assert simulate_scene(run["scene"], [0.0]).last["x"] == run["x"]
-    text = CliRunner().invoke(main, ["simulate", "--scene", "air-hockey"]).stdout
+    text = invoke("simulate", "--scene", "air-hockey").stdout
     for part in (
         "launch     velocity (2, 1.3) m/s, spin -30 rad/s", "drag       sliding 0.006 kg/s",
         "wall[3]    point (0, 1) m", "time       10 s",
@@ -89,7 +88,7 @@ def test_json_and_report_carry_inputs_and_units() -> None:
 
 def test_the_command_names_the_runs_without_an_end() -> None:
     steep = ("--set", "floor.slope=0.1:0.3:3", "--set", "launch.spin=30")
-    result = CliRunner().invoke(main, ["sweep", "--scene", "incline", *steep])
+    result = invoke("sweep", "--scene", "incline", *steep)
     assert result.exit_code == 0
     assert "1 at rest, 2 no end found" in result.stderr
     assert "2 of 3 runs: no end found; the first at floor.slope = 0.2: none by" in result.stderr
@@ -98,7 +97,7 @@ def test_the_command_names_the_runs_without_an_end() -> None:
 
 def test_a_scene_written_by_powershell_is_read(tmp_path: Path) -> None:
     """Its '>' writes UTF-16 with a mark of the order of its bytes, and line ends of its own."""
-    text = CliRunner().invoke(main, ["scene", "show", "incline"]).stdout.replace("\n", "\r\n")
+    text = invoke("scene", "show", "incline").stdout.replace("\n", "\r\n")
     for name, content in (
         ("le", text.encode("utf-16")),
         ("be", b"\xfe\xff" + text.encode("utf-16-be")),

@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scenes import simulate_scene, sweep_scene
 
 import puck_tables as pt
@@ -90,7 +89,7 @@ def test_names_files_and_clashes(tmp_path):
         (["simulate", "--scene", "incline", "--w0", "1", "--set", "launch.spin=2"], "clash"),
         (["simulate", "--scene", "incline", *twice], "clash"),
     ):
-        result = CliRunner().invoke(main, arguments)
+        result = invoke(*arguments)
         assert result.exit_code == 2
         assert words in result.stderr
         assert "Traceback" not in result.stderr

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from puck_tables.cli.values import NumberParam
 
 import puck_tables as pt
@@ -77,7 +76,7 @@ def test_one_scene_has_one_gravity_and_what_a_puck_says_is_never_overridden():
         with pytest.raises(pt.InputError, match=r"puck\[0\]\.gravity = 1\.62: the scene's gravity"):
             replace(alike, gravity=gravity)
     wrong = ["simulate", "--scene", "carrom-break", "--set", "puck.gravity=3"]
-    assert "write --gravity 3" in CliRunner().invoke(main, wrong).stderr
+    assert "write --gravity 3" in invoke(*wrong).stderr
 
 
 def test_a_scene_without_its_gravity_is_on_the_earth_again():

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from random_scenes import draw
+from rarely import nightly
 from scene_judge import Judge
 from scenes import simulate_scene
 
@@ -90,9 +91,7 @@ def truth() -> dict[str, tuple[np.ndarray, np.ndarray]]:
 @pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("name", SMOOTH)
-def test_as_the_judge_has_it(
-    name: str, tol: float, truth: dict[str, tuple[np.ndarray, np.ndarray]]
-) -> None:
+def test_as_the_judge_has_it(name, tol, truth):
     times, states = truth[name]
     scene = {**SMOOTH[name], "time": 2.0, "tol": tol}
     run = simulate_scene(scene, times)
@@ -126,7 +125,8 @@ def _error(run: Run, best: Run, size: np.ndarray) -> float:
     )
 
 
-def _tol_is_kept(seeds: range) -> None:
+@pytest.mark.parametrize("seeds", [range(60), nightly(range(60, 400))])
+def test_tol_is_kept(seeds: range) -> None:
     """Few scenes multiply every error; there the finest runs differ by as much of their tol."""
     unstable = []
     for seed in seeds:
@@ -147,12 +147,3 @@ def _tol_is_kept(seeds: range) -> None:
             unstable.append(seed)
             assert max(share[1e-6], share[1e-9]) <= 5.0 * share[1e-11], (seed, share)
     assert len(unstable) <= 0.01 * len(seeds), unstable
-
-
-def test_tol_is_kept() -> None:
-    _tol_is_kept(range(60))
-
-
-@pytest.mark.nightly
-def test_tol_is_kept_by_many() -> None:
-    _tol_is_kept(range(60, 400))

@@ -5,8 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from scenes import simulate_scene
 from scipy.integrate import solve_ivp
 
@@ -89,7 +88,7 @@ def test_slices_of_strips_are_brought_to_one_shape_and_stay_the_same_splines():
     regions = scene.world()._engine.regions
     from puck_tables.kernels.quadratic import section_ratios
 
-    alone = regions.cuts[~regions.astride]
+    alone = regions.limits[~regions.summed]
     for n, delta in enumerate(2 * np.array(strips["friction"]) * 0.09 / 0.04):
         for phi in np.linspace(0.01, 1.56, 41):
             k = min(math.tan(phi), 1.0 / math.tan(phi))
@@ -161,15 +160,15 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
     said = []
     for _ in range(2):
         _kept_table.cache_clear()
-        done = CliRunner().invoke(main, words)
+        done = invoke(*words)
         assert done.exit_code == 0, done.output
         said.append("tabulating the friction law" in done.stderr)
     assert said == [True, False]
-    assert "slip-speed-cubic-1e-06" in CliRunner().invoke(main, ["tables"]).stdout
+    assert "slip-speed-cubic-1e-06" in invoke("tables").stdout
     (kept,) = (tmp_path / "cache" / "puck-tables" / "tables").iterdir()
     kept.write_bytes(kept.read_bytes()[:-100])
     _kept_table.cache_clear()
-    done = CliRunner().invoke(main, words)
+    done = invoke(*words)
     assert done.exit_code == 0
     assert "is damaged, or another table than its name says: it is built again" in done.stderr
 

@@ -1,10 +1,9 @@
 """No wall, edge or border is missed: paths that are cubics, judged by their roots."""
 
-from pathlib import Path
-
 import lines_judge
 import numpy as np
 import pytest
+from rarely import nightly, thorough
 
 
 def test_the_judge_knows_a_puck_that_dips_into_a_wall_and_comes_back():
@@ -22,15 +21,6 @@ def test_the_judge_knows_a_puck_that_dips_into_a_wall_and_comes_back():
     assert round(t, 10) == 0.8881217896
 
 
-def faults(count: int, seed: int, tol: float, folder: Path) -> list[str]:
-    found = []
-    for index in range(count):
-        word, why, _ = lines_judge.verdict(lines_judge.prepared(seed, index), tol, folder)
-        if word != "right":
-            found.append(f"{index}: {word}: {why}")
-    return found
-
-
 @pytest.mark.parametrize("drawn", [(31, 468), (2, 1863)])
 @pytest.mark.parametrize("tol", [1e-4, 1e-9])
 def test_a_border_is_met_once(drawn, tol, tmp_path):
@@ -38,13 +28,12 @@ def test_a_border_is_met_once(drawn, tol, tmp_path):
     assert lines_judge.verdict(lines_judge.prepared(*drawn), tol, tmp_path)[0] == "right"
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("tol", [1e-3, 1e-6, 1e-9])
-def test_no_boundary_is_missed(tol, tmp_path):
-    assert faults(200, 1, tol, tmp_path) == []
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("tol", 10.0 ** -np.arange(3.0, 11.0))
-def test_no_boundary_is_missed_in_thousands(tol, tmp_path):
-    assert faults(2000, 2, float(tol), tmp_path) == []
+@pytest.mark.parametrize(
+    ("count", "seed", "tol"),
+    [*(thorough(200, 1, tol) for tol in (1e-3, 1e-6, 1e-9)),
+     *(nightly(2000, 2, tol) for tol in (10.0 ** -np.arange(3.0, 11.0)).tolist())],
+)  # fmt: skip
+def test_no_boundary_is_missed(count, seed, tol, tmp_path):
+    for index in range(count):
+        word, why, _ = lines_judge.verdict(lines_judge.prepared(seed, index), tol, tmp_path)
+        assert word == "right", (index, why)

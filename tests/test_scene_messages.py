@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from click.testing import Result
+from commands import invoke
 from scenes import simulate_scene
 
 from puck_tables.errors import InputError
@@ -17,7 +17,7 @@ HEAD = "[puck]\nradius = 0.04\nmass = 0.2\nfriction = 0.2\n[launch]\nvelocity = 
 
 
 def puck(*arguments: str) -> Result:
-    result = CliRunner().invoke(main, list(arguments))
+    result = invoke(*arguments)
     assert "Traceback" not in result.stderr
     assert all(sign.isprintable() or sign == "\n" for sign in result.stdout + result.stderr)
     return result
@@ -47,8 +47,7 @@ def test_a_scene_file_that_is_none(text: bytes, said: str, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize(
-    "change",
-    ["title='a\udcff'", 'title="a\\nb"', 'title="\\u0000"', f"launch.spin=0x{'f' * 5000}"],
+    "change", ["title='a\udcff'", 'title="a\\nb"', 'title="\\u0000"', f"launch.spin=0x{'f' * 5000}"]
 )
 def test_a_change_that_is_none(change: str) -> None:
     assert puck("simulate", "--scene", "incline", "--set", change).exit_code == 2
@@ -100,6 +99,6 @@ def test_a_folder_that_may_not_be_entered(tmp_path: Path) -> None:
 
 
 def test_events_name_where_they_happen() -> None:
-    said = CliRunner().invoke(main, ["simulate", "--scene", "wet-patch"]).stdout
+    said = invoke("simulate", "--scene", "wet-patch").stdout
     assert "entry (border 0) at " in said and "stick (strip 2) at " in said
     assert "J given by launches" in said and "-0 J" not in said

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from pairs_judge import draw
+from rarely import nightly, thorough
 from rebound_judge import draw as draw_rebounds
 from scene_truth import LEANS, truth
 from verdicts import judged, known
@@ -48,49 +49,31 @@ def test_the_judge_lets_a_leaning_rim_feel_friction(restitution):
     assert abs(abs(late[5]) * radius - late[4]) <= 1e-9
 
 
-def faults(scenes, tols, folder):
+@pytest.mark.parametrize(
+    ("scenes", "tols"),
+    [
+        thorough([(draw, 1, 0), (draw, 1, 3), (draw, 1, 5), (draw, 2, 285), (draw, 12, 79)],
+                 [1e-6, 1e-9]),
+        # hundreds of rebounds add up what friction of a table errs by
+        thorough([(draw_rebounds, 2, 94)], [1e-6]),
+        thorough([*((draw_rebounds, 1, i) for i in (0, 1, 4, 5, 6, 9)), (draw_rebounds, 11, 23),
+                  *((draw_rebounds, 3, i) for i in (27, 37, 44, 112))], [1e-9]),
+        nightly([(draw, 2, i) for i in range(200)], [1e-4, 1e-6, 1e-9]),
+        nightly([(draw_rebounds, 2, i) for i in range(100)], [1e-6, 1e-9]),
+        nightly([(draw_rebounds, 2, 78)], [1e-6]),  # 2285 of them, with its mass at the rim
+    ],
+    ids=["pairs", "hundreds", "settle", "many pairs", "many settle", "thousands"],
+)  # fmt: skip
+def test_as_the_judge_has_it(scenes, tols, tmp_path):
+    """Forces and torques that are off by the same share hardly change where they lead."""
     found = []
-    for scene in scenes:
+    for drawn, *numbers in scenes:
+        scene = drawn(*numbers)
         best = known(scene, limit=3_000_000)
         if best is None or not best["stable"] or best["amplification"] > 1e5:
             continue
         for tol in tols:
-            word, share, why = judged(scene, best, tol, folder)
+            word, share, why = judged(scene, best, tol, tmp_path)
             if word != "right":
                 found.append(f"{scene['class']}: tol {tol:g}: {word}, {share:.3g}: {why}")
-    return found
-
-
-@pytest.mark.thorough
-def test_pairs_and_triples(tmp_path):
-    scenes = [(1, i) for i in (0, 3, 5)] + [(2, 285), (12, 79)]
-    assert faults([draw(*scene) for scene in scenes], [1e-6, 1e-9], tmp_path) == []
-
-
-@pytest.mark.thorough
-def test_friction_of_a_table_that_hundreds_of_rebounds_add_up(tmp_path):
-    """Forces and torques that are off by the same share hardly change where they lead."""
-    assert faults([draw_rebounds(2, 94)], [1e-6], tmp_path) == []
-
-
-@pytest.mark.thorough
-def test_rebounds_that_settle(tmp_path):
-    scenes = [(1, i) for i in (0, 1, 4, 5, 6, 9)] + [(3, 27), (3, 37), (3, 44), (3, 112), (11, 23)]
-    assert faults([draw_rebounds(*scene) for scene in scenes], [1e-9], tmp_path) == []
-
-
-@pytest.mark.nightly
-def test_pairs_and_triples_by_the_hundred(tmp_path):
-    assert faults([draw(2, i) for i in range(200)], [1e-4, 1e-6, 1e-9], tmp_path) == []
-
-
-@pytest.mark.nightly
-def test_many_rebounds_that_settle(tmp_path):
-    scenes = [draw_rebounds(2, i) for i in range(100)]
-    assert faults(scenes, [1e-6, 1e-9], tmp_path) == []
-
-
-@pytest.mark.nightly
-def test_thousands_of_rebounds(tmp_path):
-    """2285 of them add up what friction errs by, that of a puck with its mass at the rim, too."""
-    assert faults([draw_rebounds(2, 78)], [1e-6], tmp_path) == []
+    assert found == []

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import thorough
 from scenes import simulate_scene
 
 from puck_tables.scene.library import find_scene
@@ -47,9 +48,7 @@ def hand_summed(restitution: float, tangential: float) -> float:
 @pytest.mark.parametrize(
     "case", [(0.025, -0.93), (0.0017, 0.9), (0.1, 0.5), (0.01, 0.335), (0.3, 0.5)]
 )
-def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(
-    case: tuple[float, float], tol: float
-) -> None:
+def test_a_rough_rim_that_settles_is_where_all_rebounds_bring_it(case, tol):
     run = leaning_rim(*case, tol)
     error = abs(run.last["x"] - hand_summed(*case)) / (run.speed_scale**2 / run.rate_scale)
     # what is left of the rebounds is a contact, on which the rim slides instead of being rubbed
@@ -86,9 +85,7 @@ def test_a_floor_that_leads_off_a_wall_carries_a_puck_off() -> None:
 
 
 @pytest.mark.parametrize("slope", [0.02, 0.05, 0.1])
-@pytest.mark.parametrize(
-    "downhill", [0.3, -0.8, 2.0, pytest.param(4.0, marks=pytest.mark.thorough)]
-)
+@pytest.mark.parametrize("downhill", [0.3, -0.8, 2.0, thorough(4.0)])
 def test_a_tilted_air_hockey_table_ends_at_rest(slope: float, downhill: float) -> None:
     scene: dict[str, Any] = dict(find_scene("air-hockey"))
     scene["puck"]["friction"] = 0.01

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import thorough
 from rays_judge import by_ellipse, points_on_rays, sides, where_it_bends
 from scenes import two_ends_as_alone
 
@@ -97,9 +98,7 @@ def slip_about(rng: np.random.Generator, base: Base, number: int) -> tuple[float
     return w * cy, -w * cx, w
 
 
-@pytest.mark.parametrize(
-    "first", [0, *(pytest.param(n, marks=pytest.mark.thorough) for n in (10, 20, 30))]
-)
+@pytest.mark.parametrize("first", [0, *map(thorough, (10, 20, 30))])
 @pytest.mark.parametrize("name", BASES)
 def test_sums_are_those_of_points_on_rays(name: str, first: int) -> None:
     """The largest gap of 200 is 8e-11 of f N, where the moments of a law are good to 1e-11."""
@@ -245,8 +244,6 @@ def test_it_stands_in_files_reports_and_pictures(tmp_path: Path) -> None:
          r"faster than the friction law floor.orthotropic.law goes \(0.5 m/s\)"),
     ],
 )  # fmt: skip
-def test_what_is_not_known_is_refused(
-    puck: dict[str, Any], floor: dict[str, Any], said: str
-) -> None:
+def test_what_is_not_known_is_refused(puck, floor, said):
     with pytest.raises(pt.InputError, match=said):
         pt.Scene(pt.Puck(0.05, **puck), pt.Floor(**floor), pt.Launch((1.0, 0.0))).simulate()

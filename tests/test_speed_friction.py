@@ -7,9 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
-from rarely import few
+from commands import invoke
+from rarely import few, nightly
 from scipy.integrate import quad
 
 from puck_tables import SpeedLaw, Table, resultants
@@ -74,7 +73,7 @@ def brute(phi: float, speed: float, law) -> list[float]:
     ("phi", "speed", "law"),
     [
         (0.4, 0.6, stribeck), (1.1, 0.6, stribeck), (0.6, 0.9, LINEAR),
-        pytest.param(1.2, 1.1, CUBIC, marks=pytest.mark.nightly),
+        nightly(1.2, 1.1, CUBIC),
     ],
     ids=["outside", "inside", "corners", "knots"],
 )  # fmt: skip
@@ -369,7 +368,7 @@ def test_the_commands(tmp_path):
     law.write_text("speed,f\n0,0.3\n0.5,0.2\n2,0.2\n")
 
     def puck(*words):
-        return CliRunner().invoke(main, list(words))
+        return invoke(*words)
 
     words = ["build-tables", "--speed-law", str(law), "-o", str(path)]
     done = puck(*words, "--accuracy", "1e-3")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from rarely import few
+from rarely import few, thorough
 from scipy.integrate import quad_vec
 
 import puck_tables as pt
@@ -105,7 +105,7 @@ def test_a_table_is_what_brute_force_says(pressure, law, reach):
 @pytest.mark.parametrize(
     ("pressure", "accuracy"),
     [("ring", 1e-7), ("annulus:0.8", 1e-8), *(
-        pytest.param(*case, marks=pytest.mark.thorough)
+        thorough(*case)
         for case in (("galin", 1e-6), ("hertz", 1e-6), (PROFILE, 1e-6), ("annulus:0.9995", 1e-6))
     )],
 )  # fmt: skip

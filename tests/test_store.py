@@ -12,8 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
-from puck_tables.cli.main import main
+from commands import invoke
 from puck_tables.cli.tables import kept_files
 from pucks import simulate
 
@@ -52,10 +51,6 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return names
 
 
-def puck(*arguments: str) -> Result:
-    return CliRunner().invoke(main, arguments)
-
-
 def test_built_once_then_read(kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]):
     first = pt.table_for("annulus:0.8", accuracy=1e-5)
     second = pt.table_for("annulus:0.8", accuracy=1e-5)
@@ -77,9 +72,7 @@ def test_inner_radii_that_differ_late_are_two_laws(builds: list[str]):
     assert a.validate(points=200).passed
 
 
-def test_a_profile_is_its_values_not_its_name(
-    builds: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_profile_is_its_values_not_its_name(builds, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("a.csv").write_text("rho,W\n0,2\n0.5,2\n1,1\n")
     Path("b.csv").write_text("0,20\n0.5,20\n1,10\n")  # the same shape
@@ -115,9 +108,7 @@ HARMS = (
 
 
 @pytest.mark.parametrize("harm", HARMS)
-def test_a_damaged_one_is_said_and_built_again(
-    harm: str, kept: Path, builds: list[str], capsys: pytest.CaptureFixture[str]
-):
+def test_a_damaged_one_is_said_and_built_again(harm, kept, builds, capsys):
     whole = pt.table_for("ring", accuracy=1e-4)
     (path,) = kept.iterdir()
     content = path.read_bytes()
@@ -161,9 +152,7 @@ def test_a_damaged_one_is_said_and_built_again(
         assert len(builds) == 2
 
 
-def test_a_folder_that_cannot_be_written_is_said_once(
-    builds: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
+def test_a_folder_that_cannot_be_written_is_said_once(builds, monkeypatch, capsys):
     monkeypatch.setenv("XDG_CACHE_HOME", "/proc/none")  # not even root can write there
     for _ in range(2):
         assert pt.table_for("ring", accuracy=1e-4).tolerance == 1e-4
@@ -173,9 +162,7 @@ def test_a_folder_that_cannot_be_written_is_said_once(
     assert said[0].startswith("the table is used but not kept for the next time: ")
 
 
-def test_a_full_disk_is_said_and_leaves_nothing(
-    kept: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
+def test_a_full_disk_is_said_and_leaves_nothing(kept, monkeypatch, capsys):
     def full(descriptor: int) -> None:
         raise OSError(28, "No space left on device")
 
@@ -264,14 +251,14 @@ def test_the_friction_of_a_tall_puck_is_kept(kept: Path, monkeypatch: pytest.Mon
     other = simulate((1.0, 0.0), 5.0, delta=1.5000001, tol=1e-5)
     assert len(built) > times
     assert other.stop_time != first.stop_time
-    listed = puck("tables").stdout
+    listed = invoke("tables").stdout
     assert listed.count("friction section") == len(list(kept.iterdir()))
     monkeypatch.setattr(table_store, "MOST_ALIKE", 3)
     for delta in (1.1, 1.2, 1.3):
         friction_section.friction_for(pt.law_of("uniform"), delta, 1e-4)
     assert sorted(path.name[:8] for path in kept.iterdir()) == ["tall-1.1", "tall-1.2", "tall-1.3"]
     simulate((1.0, 0.0), 5.0, delta=0.5, pressure="ring", tol=1e-5)
-    assert "ring" not in puck("tables").stdout  # made in no time
+    assert "ring" not in invoke("tables").stdout  # made in no time
 
 
 def test_stops_of_other_pucks_are_kept(kept: Path, monkeypatch: pytest.MonkeyPatch):
@@ -297,7 +284,7 @@ def test_stops_of_other_pucks_are_kept(kept: Path, monkeypatch: pytest.MonkeyPat
         assert again.selections == before.selections
     with pytest.raises(AssertionError, match="tabulated again"):
         pt.stop(*launches, tol=1e-6, **pucks[0])
-    assert puck("tables").stdout.count("stop section") == len(pucks)
+    assert invoke("tables").stdout.count("stop section") == len(pucks)
     own = pt.Table.build("ring", 1e-8)
     with pytest.raises(AssertionError, match="tabulated again"):  # of a table of one's own: not
         pt.stop(*launches, tol=1e-5, table=own, **pucks[1])
@@ -324,30 +311,30 @@ def test_listed_removed_and_cleaned(kept: Path, tmp_path: Path):
     mine[0].write_text("mine")
     mine[1].write_text("mine")
     mine[2].symlink_to(mine[1])
-    listed = json.loads(puck("tables", "--json").stdout)
+    listed = json.loads(invoke("tables", "--json").stdout)
     found = {entry["name"]: entry for entry in listed}
     assert set(found) == {"resultants.h5", "stops.h5", *names}
     assert [found[name]["whole"] for name in names] == [False, True]
     ring = found[names[1]]
     assert (ring["pressure_law"], ring["accuracy"]) == ("ring", 1e-4)
     assert (ring["bytes"], ring["place"]) == ((kept / names[1]).stat().st_size, str(kept))
-    shown = puck("tables")
+    shown = invoke("tables")
     assert shown.output.isascii()
     assert [line.split()[0] for line in shown.stdout.splitlines()[3:5]] == names
     assert "damaged" in shown.stdout
     assert f"kept in {kept}" in shown.stdout
 
-    removed = puck("tables", "--remove", names[0])
+    removed = invoke("tables", "--remove", names[0])
     assert (removed.exit_code, removed.stdout) == (0, f"removed {kept / names[0]}\n")
     for name in (names[0], "resultants.h5", "mine.h5", "notes.txt", "../../x", mine[2].name):
-        refused = puck("tables", "--remove", name)
+        refused = invoke("tables", "--remove", name)
         assert (refused.exit_code, refused.stdout) == (2, "")
         assert f"no table {name} is kept" in refused.stderr
     left = kept / f".puck-{0:016}.part"  # of a builder that was killed while writing
     left.write_text("x")
-    cleaned = puck("tables", "--clean")
+    cleaned = invoke("tables", "--clean")
     assert cleaned.stdout == f"removed {kept / names[1]}\n"
     assert sorted(path.name for path in kept.iterdir()) == sorted(path.name for path in mine)
     assert mine[1].read_text() == "mine"
-    assert "nothing to remove" in puck("tables", "--clean").stdout
-    assert puck("tables", "--clean", "--json").exit_code == 2
+    assert "nothing to remove" in invoke("tables", "--clean").stdout
+    assert invoke("tables", "--clean", "--json").exit_code == 2

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables import Puck, Scene
 from puck_tables._core import safe_write
@@ -96,9 +95,7 @@ def test_other_stores_are_kept_and_replaced_on_demand(tmp_path: Path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["m.zarr", "theirs.zarr"]
 
 
-def test_a_full_disk_is_a_sentence_and_what_is_kept_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_full_disk_is_a_sentence_and_what_is_kept_stays(tmp_path, monkeypatch):
     true, calls = safe_write.hold, itertools.count()
 
     def hold(descriptor: int) -> None:
@@ -143,17 +140,15 @@ def test_maps_of_scenes_and_boards_in_a_store(scene: str, tmp_path: Path):
 
 
 @pytest.mark.thorough
-def test_the_command_line_writes_a_store_and_draws_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_the_command_line_writes_a_store_and_draws_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = ["sweep", "--w0", "0:5:30", "--speed", "0:2:20", "-o", "m.zarr", "--plot", "m.png"]
     for _ in range(2):
-        result = CliRunner().invoke(main, [*words, "--overwrite"])
+        result = invoke(*words, "--overwrite")
         assert result.exit_code == 0, result.stderr
         assert "600 stopped; look-up" in result.stderr
         assert Path("m.png").stat().st_size > 10_000
-    result = CliRunner().invoke(main, ["sweep", "--w0", "0:5:31", "-o", "m.zarr"])
+    result = invoke("sweep", "--w0", "0:5:31", "-o", "m.zarr")
     assert (result.exit_code, "holds other work" in result.stderr) == (2, True)
 
 

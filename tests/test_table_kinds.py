@@ -14,10 +14,9 @@ import h5py
 import numpy as np
 import pytest
 import xarray
-from click.testing import CliRunner
+from commands import invoke
 from conftest import ROOT
 from kinds_of_table import KINDS, LAW, answers, small
-from puck_tables.cli.main import main
 from rarely import few
 
 from puck_tables import Table, law_of
@@ -92,7 +91,7 @@ def test_a_file_says_what_it_holds(kind: str, saved: Callable[[str], Path]):
         assert set(table.functions) <= set(data.variables)
         assert all("units" in data[name].attrs for name in {*data.variables} - {"made_of"})
         assert function in data
-    told = CliRunner().invoke(main, ["info", str(saved(kind))]).stdout
+    told = invoke("info", saved(kind)).stdout
     for words in (grid, f"{table.tolerance:g}", "right", COMMAND, table.pressure_law):
         assert words in told
     assert repr(table) == (
@@ -104,10 +103,8 @@ def test_a_file_says_what_it_holds(kind: str, saved: Callable[[str], Path]):
 # that of stops takes long, and is judged in test_similarity too
 @pytest.mark.thorough
 @pytest.mark.parametrize("kind", few(len(KINDS) - 1, sorted(KINDS, key="stops".__eq__)))
-def test_an_honest_table_passes_and_a_bold_or_bent_one_fails(
-    kind: str, saved: Callable[[str], Path]
-):
-    judged = CliRunner().invoke(main, ["validate", str(saved(kind))])
+def test_an_honest_table_passes_and_a_bold_or_bent_one_fails(kind, saved):
+    judged = invoke("validate", saved(kind))
     assert judged.exit_code == 0, judged.output
     assert "FAIL" not in judged.stdout
     table = Table.load(saved(kind))
@@ -118,9 +115,7 @@ def test_an_honest_table_passes_and_a_bold_or_bent_one_fails(
 
 
 @every_kind
-def test_nothing_is_overwritten_and_nothing_non_finite_is_saved(
-    kind: str, saved: Callable[[str], Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-):
+def test_nothing_is_overwritten_and_nothing_non_finite_is_saved(kind, saved, monkeypatch, tmp_path):
     table, path = small(kind), saved(kind)
     before = path.read_bytes()
     with pytest.raises(OutputError, match="exists already"):
@@ -170,9 +165,7 @@ def test_cut_and_flipped_files_are_refused_before_hdf5_sees_them(
 
 
 @every_kind
-def test_other_formats_kinds_and_strangers_are_refused_by_name(
-    kind: str, saved: Callable[[str], Path], tmp_path: Path
-):
+def test_other_formats_kinds_and_strangers_are_refused_by_name(kind, saved, tmp_path):
     for version, words in (
         ("5.0", r"format 5\.0, newer than 4\.0 of this program: update puck-tables"),
         ("3.0", r"format 3\.0, older than 4\.0 of this program: build it again"),

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
+from click.testing import Result
+from commands import invoke
 from numpy.testing import assert_array_equal
-from puck_tables.cli.main import main
 
 from puck_tables import read_tracks
 from puck_tables.film.film import Track
@@ -28,7 +28,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def puck(*arguments: str) -> Result:
-    return CliRunner().invoke(main, ["track", *arguments])
+    return invoke("track", *arguments)
 
 
 def test_it_says_what_was_read():

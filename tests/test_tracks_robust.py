@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from lookalikes import deeplabcut, sleap
+from rarely import nightly
 from test_tracks_text import ONE, TRACKMATE, TWO
 from test_tracks_tools import GOOD, LABELS, POSES, archive, pose_csv
 
@@ -52,9 +53,10 @@ def damaged(content: bytes, rng: random.Random) -> bytes:
     return bytes(data)
 
 
-def run(folder: Path, seed: int, count: int) -> None:
-    rng, file, read = random.Random(seed), folder / "film", 0
-    given = seeds(folder)
+@pytest.mark.parametrize(("seed", "count"), [(1, 400), nightly(2, 30_000)])
+def test_damaged_files(seed: int, count: int, tmp_path: Path):
+    rng, file, read = random.Random(seed), tmp_path / "film", 0
+    given = seeds(tmp_path)
     for _ in range(count):
         content, how = rng.choice(given)
         file.write_bytes(damaged(content, rng))
@@ -69,12 +71,3 @@ def run(folder: Path, seed: int, count: int) -> None:
             assert (np.diff(track.time) > 0.0).all()
             assert not np.isinf(track.place).any()
     assert 0 < read < count
-
-
-def test_damaged_files(tmp_path: Path):
-    run(tmp_path, 1, 400)
-
-
-@pytest.mark.nightly
-def test_many_damaged_files(tmp_path: Path):
-    run(tmp_path, 2, 30_000)

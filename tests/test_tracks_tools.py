@@ -125,9 +125,7 @@ GOOD = trk({"A": {0: (1.0, 2.0), 1: (2.0, 3.0)}}, {0: (0.0, 0.0, 0.0, 9.0)})
         ("a.ods", archive({"content.xml": "x"}), "a damaged spreadsheet"),
     ],
 )  # fmt: skip
-def test_what_is_wrong_with_files_of_tracker_is_said(
-    tmp_path: Path, name: str, content: str | bytes, words: str
-):
+def test_what_is_wrong_with_files_of_tracker_is_said(tmp_path, name, content, words):
     with pytest.raises(InputError, match=words):
         read_tracks(saved(tmp_path, name, content))
 

@@ -8,8 +8,8 @@ import numpy as np
 import pandas
 import pytest
 import xarray
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
+from rarely import thorough
 
 from puck_tables import Table, resultants
 from puck_tables.accuracy.method_errors import shipped_errors
@@ -176,7 +176,7 @@ def test_unrolled_and_general_runge_kutta_take_the_same_steps():
 
 
 @pytest.mark.parametrize(
-    "name", ["box", *(pytest.param(one, marks=pytest.mark.thorough)
+    "name", ["box", *(thorough(one)
                       for one in list(scipy_methods.BODIES)[1:])]
 )  # fmt: skip
 def test_bodies_stop_as_exactly_as_asked(name: str):
@@ -271,7 +271,7 @@ def test_refusals_come_before_the_work(tmp_path: Path, monkeypatch: pytest.Monke
         (["--plot", "new.gif"], 2, "one of .png"),
         (["-o", "a.h5", "-o", "a.h5"], 2, "two outputs"),
     ):
-        result = CliRunner().invoke(main, ["tradeoff", "--quick", *arguments])
+        result = invoke("tradeoff", "--quick", *arguments)
         assert result.exit_code == code
         assert words in result.stderr
     assert Path("old.csv").read_text() == "keep"

@@ -99,9 +99,7 @@ print(json.dumps([answers, "numba" in sys.modules]))
     ("seed", "kind"),
     few(2, [(0, "plain"), (4, "tall"), (1, "plain"), (2, "pressure"), (3, "gyration")]),
 )
-def test_python_compiles_nothing_and_tells_what_compiled_code_tells(
-    seed: int, kind: str, tmp_path: Path
-):
+def test_python_compiles_nothing_and_tells_what_compiled_code_tells(seed, kind, tmp_path):
     """But for aims of other than plain pucks, and boards of them."""
     rng = np.random.default_rng(seed)
     radius, friction = rng.uniform(0.02, 0.1), rng.uniform(0.1, 0.5)
@@ -179,9 +177,7 @@ def test_short_work_is_done_as_it_is_written(monkeypatch: pytest.MonkeyPatch):
 
 @pytest.mark.usefixtures("patient")
 @pytest.mark.parametrize(("items", "at_first"), [(1, 1e-3), (65, 1.5)])
-def test_long_work_goes_on_compiled_from_what_it_was_given(
-    items: int, at_first: float, monkeypatch: pytest.MonkeyPatch
-):
+def test_long_work_goes_on_compiled_from_what_it_was_given(items, at_first, monkeypatch):
     monkeypatch.setattr(doors, "AT_FIRST", at_first)
     count, out = counting(), np.array([1.0, 2.0])
     loops = 50_000
@@ -200,9 +196,7 @@ def test_long_work_goes_on_compiled_from_what_it_was_given(
 
 
 @pytest.mark.usefixtures("patient")
-def test_what_takes_long_to_compile_runs_longer_and_says_so_once(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-):
+def test_what_takes_long_to_compile_runs_longer_and_says_so_once(monkeypatch, capsys):
     monkeypatch.setattr(doors, "_SILENT", 1e-3)
     monkeypatch.setattr(doors, "is_any_kept", lambda _: False)  # another process may keep some
     count = counting()
@@ -284,9 +278,7 @@ def test_many_threads_compile_once(monkeypatch: pytest.MonkeyPatch):
 
 
 @pytest.mark.usefixtures("patient")
-def test_what_was_compiled_before_is_taken_unless_one_question_is_asked(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-):
+def test_what_was_compiled_before_is_taken_unless_one_question_is_asked(monkeypatch, tmp_path):
     monkeypatch.setattr("puck_tables.kernels.kept_code.cache_folder", lambda: tmp_path)
     monkeypatch.setattr("puck_tables.kernels.cache._place", lambda: tmp_path)
     monkeypatch.setattr(here, "at_once", True)
@@ -325,9 +317,7 @@ def test_a_door_is_handed_to_other_processes_by_its_name():
         ("NUMBA_CPU_FEATURES", "nonsense"), ("NUMBA_OPT", "best"), ("NUMBA_BOUNDSCHECK", "x"),
     ],
 )  # fmt: skip
-def test_settings_that_numba_cannot_use_are_refused_in_one_sentence(
-    name: str, value: str, tmp_path: Path
-):
+def test_settings_that_numba_cannot_use_are_refused_in_one_sentence(name, value, tmp_path):
     given = {**os.environ, **COMPILED, name: value, "NUMBA_CACHE_DIR": str(tmp_path)}
     ended = subprocess.run([*PUCK, *LAUNCH], env=given, capture_output=True, text=True)
     assert ended.returncode == 2

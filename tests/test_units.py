@@ -11,8 +11,7 @@ from typing import Any
 import click
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 from puck_tables.cli.values import NumberParam, RangeParam, Times, Vector
 
 import puck_tables as pt
@@ -72,7 +71,7 @@ def test_what_is_no_length_gets_a_sentence(text: str):
         InputError, match=r"radius = '.*': must be a number > 0 m, or with its unit"
     ):
         pt.Puck(text)
-    ended = CliRunner().invoke(main, ["simulate", "--v0", "1,0", "--radius", text])
+    ended = invoke("simulate", "--v0", "1,0", "--radius", text)
     assert ended.exit_code == 2 and "is not a number, or one with a unit as 25mm" in ended.stderr
 
 
@@ -106,7 +105,7 @@ def test_spreads_take_units():
     for scene, name in (([], "w0"), (["--scene", "incline"], "launch.spin")):
         means = []
         for spread in (f"normal:{text}:0.1rad/s", f"normal:{value!r}:0.1"):
-            ended = CliRunner().invoke(main, [*how, f"{name}={spread}", *scene])
+            ended = invoke(*how, f"{name}={spread}", *scene)
             assert ended.exit_code == 0, ended.output
             means.append(ended.stdout)
         assert means[0] == means[1]
@@ -118,20 +117,20 @@ def test_commands_with_units_and_lists_answer_as_the_library_does():
     (r, radius), (h, height) = drawn(rng, "m", 0.03, 0.05), drawn(rng, "m", 0.01, 0.02)
     (v, speed), (w, spin) = drawn(rng, "m/s"), drawn(rng, "rad/s", 5.0, 9.0)
     real = ["--radius", r, "--height", h, "--friction", "0.1"]
-    shot = CliRunner().invoke(main, ["simulate", "--v0", f"{v},0", "--w0", w, *real, "--json"])
+    shot = invoke("simulate", "--v0", f"{v},0", "--w0", w, *real, "--json")
     expected = pt.Puck(radius, height, 0.1).stop((speed, 0.0), spin)
     assert json.loads(shot.stdout)["stop_time"] == pytest.approx(
         expected.stop_time.item(), rel=1e-8
     )
     listed = f"0,{w},2rad/s"
-    ended = CliRunner().invoke(main, ["sweep", "--v0", f"{v},0", "--w0", listed, *real])
+    ended = invoke("sweep", "--v0", f"{v},0", "--w0", listed, *real)
     rows = [line.split(",") for line in ended.stdout.splitlines()]
     at = rows[0].index("stop_time[s]")
     times = pt.Puck(radius, height, 0.1).stop((speed, 0.0), [0.0, spin, 2.0]).stop_time
     assert [float(row[at]) for row in rows[1:]] == pytest.approx(times.tolist(), rel=1e-8)
     scene = ["--scene", "incline", "--set", f"puck.radius={r}"]
     for spins in (["--w0", listed], ["--set", f"launch.spin={listed}"]):
-        ended = CliRunner().invoke(main, ["sweep", *scene, *spins])
+        ended = invoke("sweep", *scene, *spins)
         found = [float(line.split(",")[0]) for line in ended.stdout.splitlines()[1:]]
         assert found == pytest.approx([0.0, spin, 2.0])
 
@@ -147,9 +146,9 @@ def test_names_of_files_that_are_no_text(tmp_path: Path, monkeypatch: pytest.Mon
         law_of(name).name.encode()
         pt.Puck.similar(pressure=name).simulate((1.0, 0.0)).save(f"run{ending}")
         build = ["build-tables", "--accuracy", "1e-3", "-o", f"{n}.h5"]
-        made = CliRunner().invoke(main, [*build, "--pressure", name])
+        made = invoke(*build, "--pressure", name)
         assert made.exit_code == 0, made.stderr
-        assert CliRunner().invoke(main, ["info", f"{n}.h5"]).exit_code == 0
+        assert invoke("info", f"{n}.h5").exit_code == 0
 
 
 @pytest.mark.parametrize("seed", range(20))

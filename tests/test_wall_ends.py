@@ -9,6 +9,7 @@ from typing import Any
 import bounce_judge
 import numpy as np
 import pytest
+from rarely import nightly
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
@@ -75,13 +76,9 @@ def compare_with_geometry(seed: int) -> int:
     return agreed
 
 
-def test_hundreds_of_drawn_walls_agree_with_rays_and_circles() -> None:
-    assert sum(map(compare_with_geometry, range(100))) > 200
-
-
-@pytest.mark.nightly
-def test_thousands_of_drawn_walls_agree_with_rays_and_circles() -> None:
-    assert sum(map(compare_with_geometry, range(100, 6400))) > 12_600
+@pytest.mark.parametrize("seeds", [range(100), nightly(range(100, 6400))])
+def test_drawn_walls_agree_with_rays_and_circles(seeds: range) -> None:
+    assert sum(map(compare_with_geometry, seeds)) > 2 * len(seeds)
 
 
 def square(ends: float, **rim: Any) -> tuple[list[pt.Wall], list[pt.Wall]]:

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 import puck_tables as pt
 from puck_tables.plot.animation import film_of
@@ -78,11 +77,11 @@ def _toml(scene: pt.Scene) -> dict[str, Any]:
 
 
 def test_the_command_runs_sweeps_and_draws_it(board: Path, tmp_path: Path) -> None:
-    run = CliRunner().invoke(main, ["simulate", "--scene", str(board), "--explain"])
+    run = invoke("simulate", "--scene", board, "--explain")
     assert run.exit_code == 0 and "3 walls" in run.output
     args = ["sweep", "--scene", str(board), "--set", 'wall[0].end[1]="0.0:0.4:9"', "-o",
             str(tmp_path / "ends.csv")]  # fmt: skip
-    sweep = CliRunner().invoke(main, args)
+    sweep = invoke(*args)
     assert sweep.exit_code == 0, sweep.output
     with open(tmp_path / "ends.csv") as file:
         ends = [float(row["x[m]"]) for row in csv.DictReader(file)]

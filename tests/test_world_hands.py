@@ -48,7 +48,7 @@ def bits(world: pt.World) -> list[bytes]:
     rows = {
         "events": g.N_EVENTS,
         "history": g.N_HISTORY,
-        "work_rows": g.N_WORKS,
+        "work_rows": g.N_WORK_ROWS,
         "pieces": g.N_PIECES,
     }
     names = ("clock", "discs", "kinds", "segments", "group", "next_time", "next_partner", "counts",

@@ -72,9 +72,7 @@ def rim_of(judge: Judge, world: pt.World) -> int:
 
 @pytest.mark.parametrize(("friction", "span"), [(0.1, 0.05), (0.4, 0.1), (math.inf, 0.1)])
 @pytest.mark.parametrize("turning", [0.0, 3.0])
-def test_an_oblique_push_is_booked_as_another_integrator_has_it(
-    friction: float, span: float, turning: float
-):
+def test_an_oblique_push_is_booked_as_another_integrator_has_it(friction, span, turning):
     way = [[0.0, -0.12, 0.0, 0.0], [2.0, 0.88, 0.0, 2.0 * turning]]
     how = {"restitution": 0.0, "tangential": 0.0, "rim": friction}
     puck = puck_at(0.0, 0.02, (0.0, 0.0), -4.0, height=0.0, **how)

@@ -261,11 +261,7 @@ def chain(scene: pt.Scene, seed: int, calls: int = 40, n: int = 5) -> Pair:
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("board", ["table", "drawn", "pieces"])
 def test_boards_are_worlds_of_their_own_whatever_is_done(board: str, seed: int):
-    scenes = {
-        "table": table,
-        "drawn": lambda: draw(seed, 5),
-        "pieces": lambda: draw_pucks(seed, 4),
-    }
+    scenes = {"table": table, "drawn": lambda: draw(seed, 5), "pieces": lambda: draw_pucks(seed, 4)}
     pair = chain(scenes[board](), seed)
     if board != "table":
         one = int(np.flatnonzero(pair.many.in_play.all(axis=0))[0])
@@ -331,7 +327,7 @@ def test_more_than_a_bench_holds_is_played_alone(monkeypatch: pytest.MonkeyPatch
 
 
 def test_lines_passed_more_often_than_a_bench_notes(monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(bench, "_FOUND", 1)
+    monkeypatch.setattr(bench, "_PASSINGS", 1)
     pair = Pair(table(), 3)
     assert pair.strike(1, np.arange(3), strikes(3), None)
     assert pair.advance(1.0)

@@ -12,8 +12,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
-from puck_tables.cli.main import main
+from commands import invoke
 
 from puck_tables._core import safe_write
 from puck_tables.accuracy.method_errors import shipped_errors
@@ -68,7 +67,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def puck(name: str, place: str, *more: str) -> tuple[int, str]:
-    result = CliRunner().invoke(main, [part.format(place) for part in COMMANDS[name][0]] + [*more])
+    result = invoke(*([part.format(place) for part in COMMANDS[name][0]] + [*more]))
     assert result.exit_code == 0 or isinstance(result.exception, SystemExit), result.exception
     return result.exit_code, result.stderr
 
@@ -142,9 +141,7 @@ def test_a_full_disk(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch):
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_folder_that_vanishes_during_the_work(
-    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
-):
+def test_a_folder_that_vanishes_during_the_work(name, folder, monkeypatch):
     target = Path("gone", COMMANDS[name][1].format("new"))
     target.parent.mkdir(parents=True)
     true: Callable[..., object] = safe_write.new_part

@@ -64,11 +64,11 @@ def _measured(name: str, texts: npt.NDArray[np.str_], unit: str) -> FloatArray:
     if bare := without_unit(written, unit):
         raise InputError(f"{name}: {UNIT_EACH.format(bare)}")
     # what is no number is named, not one beside it that lacks a unit
-    found = {text: number_in(name, text, unit) for text in written if math.isnan(_plain(text))}
+    measured = {text: number_in(name, text, unit) for text in written if math.isnan(_plain(text))}
     for text in written:
-        if text not in found:
-            found[text] = 0.0 if _plain(text) == 0.0 else number_in(name, text, unit)
-    return np.array([found[text] for text in written]).reshape(texts.shape)
+        if text not in measured:
+            measured[text] = 0.0 if _plain(text) == 0.0 else number_in(name, text, unit)
+    return np.array([measured[text] for text in written]).reshape(texts.shape)
 
 
 def _plain(text: str) -> float:
@@ -85,11 +85,11 @@ def number_in(name: str, text: str, unit: str) -> float:
     >>> number_in("spin", "30rpm", "rad/s")
     3.141592653589793
     """
-    found = quantity(text, unit)
-    if found is None:
+    value = quantity(text, unit)
+    if value is None:
         why = unit_meant(text) or f"or one with its unit, as '{SHOWN[unit]}'"
         raise InputError(f"{name} must be a number{bracketed(unit)}, got {shown(text)}: {why}")
-    return found
+    return value
 
 
 def real_view(name: str, values: npt.ArrayLike, unit: str) -> FloatArray:
@@ -171,10 +171,10 @@ def listed(name: str, values: object, what: str) -> list[Any]:
     try:
         if isinstance(values, str | bytes):
             raise TypeError
-        found: list[Any] = list(values)  # type: ignore[call-overload]
+        result: list[Any] = list(values)  # type: ignore[call-overload]
     except TypeError:
         raise InputError(f"{name} must be a list of {what}, got {shown(values)}") from None
-    return found
+    return result
 
 
 def broadcast(**arrays: FloatArray) -> list[FloatArray]:

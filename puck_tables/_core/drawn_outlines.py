@@ -75,7 +75,7 @@ def _drawn(path: str, content: bytes) -> list[FloatArray]:
             f"{path}: the page has no size: give <svg> a width and a height in mm, cm or in"
         )
     scale = number_in(f"{path}: width", sizes[0], "m") / float(drawing.width)
-    found, arcs = [], 0
+    outlines, arcs = [], 0
     for line in lines:
         if (box := line.bbox()) is None:  # a point
             continue
@@ -94,12 +94,12 @@ def _drawn(path: str, content: bytes) -> list[FloatArray]:
         if np.count_nonzero(apart) < 3:
             raise InputError(f"{path}: a line in it goes round nothing: remove it")
         left = float((rows[:, 0] * ahead[:, 1] - rows[:, 1] * ahead[:, 0]).sum()) >= 0.0
-        found.append(rows[apart][:: 1 if left else -1])
-    if not found:
+        outlines.append(rows[apart][:: 1 if left else -1])
+    if not outlines:
         raise InputError(f"{path}: nothing is drawn in it: draw a closed outline")
     if arcs:
         say(f"{path}: its curves are taken as chords, off by at most {_OFF:g} of its size")
-    return sorted(found, key=lambda rows: -float(np.ptp(rows, axis=0).prod()))
+    return sorted(outlines, key=lambda rows: -float(np.ptp(rows, axis=0).prod()))
 
 
 def _place(point: Any) -> complex:
@@ -114,6 +114,6 @@ def _chords(arc: Any, off: float) -> list[complex]:
         ends = places[::2]
         worst = float(np.abs(places[1::2] - 0.5 * (ends[1:] + ends[:-1])).max())
         if worst <= off or count > _MOST_CHORDS:
-            found: list[complex] = ends[1:].tolist()
-            return found
+            points: list[complex] = ends[1:].tolist()
+            return points
         count = math.ceil(1.01 * count * math.sqrt(worst / off))

@@ -73,8 +73,8 @@ def keep_on() -> None:
 
     Raises KeyboardInterrupt in a thread of :func:`run_chunks` that is not to finish its work.
     """
-    given_up = getattr(_this_thread, "given_up", None)
-    if given_up is not None and given_up.is_set():
+    interrupted = getattr(_this_thread, "interrupted", None)
+    if interrupted is not None and interrupted.is_set():
         raise KeyboardInterrupt
 
 
@@ -82,14 +82,14 @@ def _run(
     work: Callable[[int, int], None], items: int, chunk: int, count: int, progress: Progress | None,
     check: Callable[[], None],
 ) -> None:  # fmt: skip
-    given_up, starts, lock = threading.Event(), iter(range(0, items, chunk)), threading.Lock()
+    interrupted, starts, lock = threading.Event(), iter(range(0, items, chunk)), threading.Lock()
     news: SimpleQueue[int | BaseException | None] = SimpleQueue()
 
     def take() -> None:
         """Chunk after chunk; the calling thread is woken only by what it wants to know."""
-        _this_thread.given_up = given_up
+        _this_thread.interrupted = interrupted
         try:
-            while not given_up.is_set():
+            while not interrupted.is_set():
                 with lock:
                     start = next(starts, items)
                 if start == items:
@@ -99,7 +99,7 @@ def _run(
                 if progress is not None:
                     news.put(stop - start)
         except BaseException as error:
-            given_up.set()
+            interrupted.set()
             news.put(error)
         else:
             news.put(None)
@@ -122,7 +122,7 @@ def _run(
             if progress is not None and word is not None:
                 progress(done, items)
     finally:
-        given_up.set()
+        interrupted.set()
         for thread in threads:
             if thread.ident is not None:
                 thread.join()

@@ -78,21 +78,21 @@ def refuse_shared(folder: Path) -> None:
     # those that lead to it, and where links among them lead
     for one in dict.fromkeys([real, *real.parents, folder, *folder.parents]):
         try:
-            found = one.lstat()
+            status = one.lstat()
         except FileNotFoundError:
             continue
         owners = (mine,) if one == real else (mine, 0)
-        if found.st_uid not in owners:
+        if status.st_uid not in owners:
             raise PermissionError(
                 1, f"the folder {one} belongs to another user: give one of your own"
             )
-        if stat.S_ISLNK(found.st_mode):  # its rights say nothing
+        if stat.S_ISLNK(status.st_mode):  # its rights say nothing
             continue
         # many systems give each user a group of the same number, in which nobody else is
-        private = found.st_gid == mine == os.getegid()
+        private = status.st_gid == mine == os.getegid()
         shared = stat.S_IWOTH if private else stat.S_IWOTH | stat.S_IWGRP
-        kept_apart = one != real and found.st_mode & stat.S_ISVTX
-        if found.st_mode & shared and not kept_apart:
+        kept_apart = one != real and status.st_mode & stat.S_ISVTX
+        if status.st_mode & shared and not kept_apart:
             raise PermissionError(
                 1, f"others may write to the folder {one}: remove it, or give one of your own"
             )

@@ -56,10 +56,10 @@ def hold(descriptor: int) -> None:
 def identity(path: Path | int) -> tuple[int, int] | None:
     """What a name stands for, whatever it is renamed to; None for nothing."""
     try:
-        found = os.fstat(path) if isinstance(path, int) else os.lstat(path)
+        status = os.fstat(path) if isinstance(path, int) else os.lstat(path)
     except FileNotFoundError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def if_dead(path: Path, then: Callable[[Path], object]) -> bool:

@@ -35,8 +35,8 @@ def function_in(name: str) -> str:
     >>> function_in("log v"), function_in("1-e"), function_in("slip speed")
     ('log', '1-', '')
     """
-    found = _FUNCTION.search(name)
-    return found[0].strip() if found else ""
+    match = _FUNCTION.search(name)
+    return match[0].strip() if match else ""
 
 
 class InputColumn(NamedTuple):

@@ -125,8 +125,8 @@ def _read(path: str, content: bytes, columns: tuple[InputColumn, ...], needed: i
         sizes.append(size)
         units.append(unit)
     _tell_unread(path, [text for n, text in enumerate(headings) if n not in taken.values()])
-    found, _ = read_columns(path, form, list(taken.values()), (), content)
-    rows = np.column_stack([found[n] for n in taken.values()]) * sizes
+    by_place, _ = read_columns(path, form, list(taken.values()), (), content)
+    rows = np.column_stack([by_place[n] for n in taken.values()]) * sizes
     rows.flags.writeable = False
     numbers = Numbers(rows, tuple(units), path, partial(_line, form, content))
     wrong = np.argwhere(~np.isfinite(rows))
@@ -180,9 +180,9 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
     numbers = numbers[1:] if heading else numbers
     if not numbers or None in numbers or set(",;\t") & set(heading):
         return None
-    if not np.isfinite(found := np.array(numbers, float)).all():
+    if not np.isfinite(values := np.array(numbers, float)).all():
         return None
-    return found * unit_of(str(path), heading, column)[1]
+    return values * unit_of(str(path), heading, column)[1]
 
 
 def _content(path: str | Path, most: int) -> bytes:

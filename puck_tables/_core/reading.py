@@ -68,14 +68,14 @@ def read_part(
     ``made``: what is made of the fields of ``kind``, which it has too.
     """
     if isinstance(data, kind):
-        given = entries_in(data, specs(made or kind))
+        entered = entries_in(data, specs(made or kind))
         if (
             isinstance(data, made or kind)
             and "_checked" in vars(data)
-            and given.keys() <= (specs(kind).keys())
+            and entered.keys() <= (specs(kind).keys())
         ):
             return data
-        data = given
+        data = entered
     if not isinstance(data, Mapping):
         reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")
         return None
@@ -131,11 +131,11 @@ def written(value: Any) -> str:
         return f"({parts},)" if len(value) == 1 else f"({parts})"
     if not dataclasses.is_dataclass(value) or not (known := specs(type(value))):
         return repr(value)
-    given = (
+    entries = (
         f"{known[name].name}={written(one)}" for name, one in entries_in(value).items()
         if not isinstance(one, Unsaid)
     )  # fmt: skip
-    return f"{type(value).__name__}({', '.join(given)})"
+    return f"{type(value).__name__}({', '.join(entries)})"
 
 
 def read_values(
@@ -305,9 +305,9 @@ def _number(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -
         except PuckError as error:
             reading.errors.append(f"{path}: {error}")
         return value  # type: ignore[return-value]  # a law in place of a number
-    said = isinstance(value, str) and (found := quantity(value, kind.unit)) is not None
+    said = isinstance(value, str) and (in_unit := quantity(value, kind.unit)) is not None
     if said:
-        value = found
+        value = in_unit
     if isinstance(value, str) and reading.ranges is not None:
         match = RANGE.fullmatch(value.strip())
         _refuse_bare(kind, [value], path, reading)

@@ -41,10 +41,10 @@ def opened(path: str | Path, largest: int) -> BinaryIO:
         raise _irregular(path)
     file = open(os.open(path, flags), "rb")  # noqa: SIM115 - for the caller to close
     try:
-        found = os.fstat(file.fileno())
-        if not stat.S_ISREG(found.st_mode):
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
             raise _irregular(path)
-        if found.st_size > largest:
+        if status.st_size > largest:
             raise OSError(errno.EFBIG, f"it is too large, {largest} bytes are the most", str(path))
     except OSError:
         file.close()

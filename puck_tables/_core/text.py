@@ -66,8 +66,8 @@ def text_form_of(path: str | Path, head: bytes) -> TextForm:
     said, separator = [], ""
     numbered = []
     for n, line in enumerate(lines):
-        if n == 0 and (told := re.fullmatch(r"sep=(.)\s*", line)):
-            separator = told[1]
+        if n == 0 and (match := re.fullmatch(r"sep=(.)\s*", line)):
+            separator = match[1]
         elif line.lstrip().startswith(COMMENTS):
             said.append(line.strip())
         elif line.strip(" \t;,|"):
@@ -137,8 +137,8 @@ def split(line: str, separator: str | None) -> list[str]:
         return line.split()
     if '"' in line:
         with contextlib.suppress(csv.Error):  # of cells without end
-            found = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
-            return [cell.strip() for cell in found]
+            cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+            return [cell.strip() for cell in cells]
     return [cell.strip() for cell in line.split(separator)]
 
 

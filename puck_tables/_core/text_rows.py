@@ -62,13 +62,13 @@ def read_columns(
             line += 1
         for block in _blocks(path, file):
             fast = _fast(block, form, numbers, texts)
-            found, cells = fast or _slow(path, block, form, numbers, texts, line)
+            values, cells = fast or _slow(path, block, form, numbers, texts, line)
             for column in texts:
                 known = words[column]
                 codes[column].append(
                     np.array([known.setdefault(one, len(known)) for one in cells[column]], int)
                 )
-            parts.append(found)
+            parts.append(values)
             line += block.count("\n")
     whole = np.concatenate(parts) if parts else np.empty((0, len(numbers)))
     coded = {
@@ -112,7 +112,7 @@ def _fast(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of blocks without rows
-            found = np.loadtxt(
+            rows = np.loadtxt(
                 io.StringIO(text), delimiter=separator, comments=None, ndmin=2,
                 usecols=None if separator is None else numbers,
             )  # fmt: skip
@@ -124,13 +124,13 @@ def _fast(
             }  # fmt: skip
     except ValueError:
         return None
-    if found.shape[0] != count or (form.comma and "." in block):
+    if rows.shape[0] != count or (form.comma and "." in block):
         return None
     if any(one.size != count for one in cells.values()):
         return None
     if separator is None:
-        return (found[:, list(numbers)], {}) if found.shape[1] == form.width else None
-    return found, {column: [text.strip() for text in one.tolist()] for column, one in cells.items()}
+        return (rows[:, list(numbers)], {}) if rows.shape[1] == form.width else None
+    return rows, {column: [text.strip() for text in one.tolist()] for column, one in cells.items()}
 
 
 def _written(form: TextForm) -> int:

@@ -130,15 +130,15 @@ def unit_named(name: str, text: str, kind: str) -> str:
     puck_tables.errors.InputError: unit = 'cms' is not known (did you mean 'cm'?). Known: m, dm, \
 cm, mm, um, km, in, ft, yd, px
     """
-    found = unit_word(text, kind) if isinstance(text, str) else ""
-    if not found:
+    word = unit_word(text, kind) if isinstance(text, str) else ""
+    if not word:
         names = [one for line in _KINDS[kind][0].values() for one in line.split()]
         why = unit_meant(str(text)[:40])
         hint = f": {why}" if why else meant(str(text).lower(), names, 0.7)
         raise InputError(
             f"{name} = {text!r:.40} is not known{hint}. Known: {', '.join(_KINDS[kind][0])}"
         )
-    return found
+    return word
 
 
 def quantity(text: str, unit: str) -> float | None:
@@ -151,14 +151,14 @@ def quantity(text: str, unit: str) -> float | None:
     >>> quantity("25.4", "m"), quantity("25.4 kg", "m")
     (None, None)
     """
-    found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s\d].*?)\s*", text)
-    size = unit_size(found[2], KIND_OF[unit]) if found and unit in KIND_OF else None
-    if found is None or size is None:
+    match = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s\d].*?)\s*", text)
+    size = unit_size(match[2], KIND_OF[unit]) if match and unit in KIND_OF else None
+    if match is None or size is None:
         return None
-    if unit_word(found[2], "angle") == "deg":
-        number = math.radians(float(found[1]))
+    if unit_word(match[2], "angle") == "deg":
+        number = math.radians(float(match[1]))
     else:
-        number = float(Decimal(found[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
+        number = float(Decimal(match[1]) * Decimal(repr(size)))  # 25.4mm is 0.0254 to the last bit
     return number
 
 
@@ -168,8 +168,8 @@ def measured_kinds(text: str) -> dict[str, float]:
     >>> measured_kinds("40mm"), measured_kinds("40"), list(measured_kinds("5g"))
     ({'m': 0.04}, {}, ['m/s^2', 'kg'])
     """
-    found = {unit: quantity(text, unit) for unit in KIND_OF}
-    return {unit: number for unit, number in found.items() if number is not None}
+    values = {unit: quantity(text, unit) for unit in KIND_OF}
+    return {unit: number for unit, number in values.items() if number is not None}
 
 
 def measured(text: str, unit: str) -> float:
@@ -180,10 +180,10 @@ def measured(text: str, unit: str) -> float:
     >>> measured("1e-3", "m"), measured("2mm", "m")
     (0.001, 0.002)
     """
-    found = quantity(text, unit)
-    if found is None and ("_" in text or not text.isascii()):  # which float() takes
+    value = quantity(text, unit)
+    if value is None and ("_" in text or not text.isascii()):  # which float() takes
         raise ValueError(text)
-    return float(text) if found is None else found
+    return float(text) if value is None else value
 
 
 def without_unit(numbers: Iterable[Any], unit: str) -> str:
@@ -219,13 +219,13 @@ def pixel_size(scale: str | float) -> float:
         return pixel_size(bar[2]) / float(bar[1])
     what = "scale must be the size of a pixel, a number and a unit such as 0.5mm"
     if isinstance(scale, str):
-        found = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s/0-9]*)\s*(?:/\s*(?:px|pixel)\s*)?", scale)
-        if found is None or not found[2]:
+        match = re.fullmatch(rf"\s*({_NUMBER})\s*([^\s/0-9]*)\s*(?:/\s*(?:px|pixel)\s*)?", scale)
+        if match is None or not match[2]:
             raise InputError(f"{what}, got '{scale:.40}'")
-        unit = unit_named("the unit of scale", found[2], "length")
+        unit = unit_named("the unit of scale", match[2], "length")
         if unit == PIXEL:
             raise InputError(f"{what}, got '{scale:.40}': a length, not pixels")
-        size = float(found[1]) * _METRES[unit]
+        size = float(match[1]) * _METRES[unit]
     else:
         try:
             size = float(scale)
@@ -252,13 +252,13 @@ def parted(text: str) -> tuple[str, str]:
     >>> parted("x [mm]"), parted("t / s"), parted("x")
     (('x', 'mm'), ('t', 's'), ('x', ''))
     """
-    found = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
-    if found is not None:
-        return found[1], found[2]
+    match = re.fullmatch(r"(.+?)\s*[\[(<]\s*([^\[\]()<>]*?)\s*[\])>]", text)
+    if match is not None:
+        return match[1], match[2]
     for form in (r"(.+?)\s*[/,]\s*([^\s/,]+)", r"(.+?)\s+(?:in|en|em)\s+(\S+)"):
-        found = re.fullmatch(form, text)
-        if found is not None and is_unit(found[2]):
-            return found[1], found[2]
+        match = re.fullmatch(form, text)
+        if match is not None and is_unit(match[2]):
+            return match[1], match[2]
     return text, ""
 
 
@@ -269,8 +269,8 @@ def bracketed(text: str) -> tuple[str, str]:
     (('Sliding speed', 'mm/s'), ('v', 'm s^-1'), ('mu', ''))
     """
     bare = text.strip().strip("\"'").strip()
-    found = re.fullmatch(r"(.*?)[\s/_,]*[\[(<{]\s*([^\[\]()<>{}]*?)\s*[\])>}]", bare)
-    return (found[1], found[2]) if found is not None and found[1] else (bare, "")
+    match = re.fullmatch(r"(.*?)[\s/_,]*[\[(<{]\s*([^\[\]()<>{}]*?)\s*[\])>}]", bare)
+    return (match[1], match[2]) if match is not None and match[1] else (bare, "")
 
 
 def unit_behind(text: str, kind: str) -> str:
@@ -279,10 +279,10 @@ def unit_behind(text: str, kind: str) -> str:
     >>> unit_behind("speed_mm_s", "velocity"), unit_behind("r/R", "radius")
     ('mm/s', '')
     """
-    for found in re.finditer(r"\s+in\s+|[\s/_,]+", text):
-        behind = text[found.end() :]
+    for match in re.finditer(r"\s+in\s+|[\s/_,]+", text):
+        behind = text[match.end() :]
         for unit in (behind, behind.replace("_", "/")):
-            if found.start() and unit_size(unit, kind) is not None:
+            if match.start() and unit_size(unit, kind) is not None:
                 return unit
     return ""
 
@@ -333,12 +333,12 @@ def unit_size(unit: str, kind: str) -> float | None:
     if kind == "velocity" and text in _SPEEDS:
         return _SPEEDS[text]
     if kind in ("velocity", "spin"):
-        found = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
-        found = found or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹|−1)", text)
-        if found is None:
+        match = re.fullmatch(r"(.+?)\s*(?:/|\s+per\s+)\s*(.+)", text)
+        match = match or re.fullmatch(r"(\S+?)(?:\s+|\*|·|\.)?(s)\^?(?:-1|⁻¹|−1)", text)
+        if match is None:
             return None
-        above = unit_size(found[1], "length" if kind == "velocity" else "angle")
-        below = unit_size(found[2], "time")
+        above = unit_size(match[1], "length" if kind == "velocity" else "angle")
+        below = unit_size(match[2], "time")
         return None if above is None or below is None else above / below
     name = unit_word(text, kind)
     return None if not name or name == PIXEL else factor(name, kind)
@@ -357,12 +357,12 @@ def _acceleration(text: str) -> float | None:
         seconds = unit_size(above_below[2], "time")
         if speed is not None and seconds is not None:
             return speed / seconds
-    found = re.fullmatch(
+    match = re.fullmatch(
         r"(.+?)\s*(?:/|\s+per\s+)\s*\(?(.+?)\s*(?:(?:\^|\*\*)?2|²|squared)\)?", text
     )
-    found = found or re.fullmatch(
+    match = match or re.fullmatch(
         r"(\S+?)(?:\s+|\*|·|\.|⋅)?(s)(?:\^|\*\*)?\(?(?:[-−]2|⁻²)\)?", text
     )
-    above = unit_size(found[1], "length") if found else None
-    below = unit_size(found[2], "time") if found else None
+    above = unit_size(match[1], "length") if match else None
+    below = unit_size(match[2], "time") if match else None
     return None if above is None or below is None else above / below**2

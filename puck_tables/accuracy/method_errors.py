@@ -135,11 +135,11 @@ def pareto(rows: Iterable[MeasuredMethod]) -> list[MeasuredMethod]:
     >>> all(a.error > b.error for a, b in zip(front[:-1], front[1:]))
     True
     """
-    front: list[MeasuredMethod] = []
+    best: list[MeasuredMethod] = []
     for row in sorted(rows, key=lambda row: (row.ns, row.error)):
-        if not front or row.error < front[-1].error:
-            front.append(row)
-    return front
+        if not best or row.error < best[-1].error:
+            best.append(row)
+    return best
 
 
 @lru_cache(maxsize=256)

@@ -59,9 +59,9 @@ def _array(number: Any) -> Any:
 
 def _merged(velocity: Any, *others: Any) -> Any:
     """Arguments (…, columns) in double precision."""
-    way, *rest = map(_array, (velocity, *others))
-    host.refuse_shape(way.shape)
-    return jnp.stack(jnp.broadcast_arrays(way[..., 0], way[..., 1], *rest), axis=-1)
+    direction, *rest = map(_array, (velocity, *others))
+    host.refuse_shape(direction.shape)
+    return jnp.stack(jnp.broadcast_arrays(direction[..., 0], direction[..., 1], *rest), axis=-1)
 
 
 stop, states = host.functions(_stops, _merged, _array)

@@ -25,8 +25,8 @@ except ImportError:
 class _Stops(torch.autograd.Function):
     @staticmethod
     def forward(arguments: Any, kind: host.PuckKind) -> Any:
-        found = host.values(arguments.numpy(force=True), kind)
-        return torch.from_numpy(found).to(arguments.device)
+        values = host.values(arguments.numpy(force=True), kind)
+        return torch.from_numpy(values).to(arguments.device)
 
     @staticmethod
     def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
@@ -49,8 +49,8 @@ class _Stops(torch.autograd.Function):
 
 
 def _slopes(arguments: Any, kind: host.PuckKind) -> Any:
-    found = host.slopes(arguments.numpy(force=True), kind)
-    return torch.from_numpy(found).to(arguments.device)
+    slopes = host.slopes(arguments.numpy(force=True), kind)
+    return torch.from_numpy(slopes).to(arguments.device)
 
 
 def _array(number: Any) -> Any:
@@ -64,9 +64,9 @@ def _array(number: Any) -> Any:
 
 def _merged(velocity: Any, *others: Any) -> Any:
     """Arguments (…, columns) in double precision."""
-    way, *rest = map(_array, (velocity, *others))
-    host.refuse_shape(tuple(way.shape))
-    return torch.stack(torch.broadcast_tensors(way[..., 0], way[..., 1], *rest), dim=-1)
+    direction, *rest = map(_array, (velocity, *others))
+    host.refuse_shape(tuple(direction.shape))
+    return torch.stack(torch.broadcast_tensors(direction[..., 0], direction[..., 1], *rest), dim=-1)
 
 
 stop, states = host.functions(_Stops.apply, _merged, _array)

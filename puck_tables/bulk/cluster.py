@@ -44,7 +44,7 @@ except ImportError:
 
 MOST_WORKERS = 1024  # processes of one machine: more is a slip of the hand
 _REACH, _PATIENCE = 5.0, 10.0  # s to reach a scheduler, to find a worker
-_SILENT, _QUIET = 5.0, 2.0  # s without a block until the scheduler is asked, and it may be silent
+_SILENT, _TIMEOUT = 5.0, 2.0  # s without a block until the scheduler is asked, and it may be silent
 _AHEAD = 4  # blocks given to each thread of the workers
 _LOOK = 0.2  # s between two looks
 _OWN = {  # of a cluster of one's own
@@ -139,15 +139,15 @@ def _threads(client: Any) -> int:
     where = client.scheduler.address
     try:
         try:
-            found = client.sync(client.scheduler.ncores, callback_timeout=_QUIET)
+            cores = client.sync(client.scheduler.ncores, callback_timeout=_TIMEOUT)
         except TimeoutError:
             with watched(f"waiting for the scheduler at {where}"):
-                found = client.sync(client.scheduler.ncores, callback_timeout=_PATIENCE)
+                cores = client.sync(client.scheduler.ncores, callback_timeout=_PATIENCE)
     except (OSError, TimeoutError):
         raise ClusterError(
             f"the scheduler at {where} does not answer any more: the same command goes on"
         ) from None
-    return sum(found.values())
+    return sum(cores.values())
 
 
 def _wait_for_workers(client: Any, otherwise: str) -> None:
@@ -200,8 +200,8 @@ def _security(where: str) -> Any:
     Raises ClusterError if they are needed and missing.
     """
     try:
-        found = Security()
-        context = found.get_connection_args("client")["ssl_context"]
+        security = Security()
+        context = security.get_connection_args("client")["ssl_context"]
     except (OSError, ValueError) as error:
         raise ClusterError(
             f"the certificates that Dask's configuration names cannot be used: {error}"
@@ -212,7 +212,7 @@ def _security(where: str) -> Any:
             "ca-file, .client.cert and .client.key (in ~/.config/dask/distributed.yaml, or as "
             "DASK_DISTRIBUTED__COMM__TLS__CA_FILE and so on)"
         )
-    return found
+    return security
 
 
 def _refuse_others(where: str, security: Any) -> None:

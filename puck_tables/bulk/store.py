@@ -284,12 +284,12 @@ class Blocks:
     @property
     def box(self) -> tuple[int, ...]:
         """How many items along each axis."""
-        cut, inner = self._blocked
-        if cut < 0:
+        blocked, inner = self._blocked
+        if blocked < 0:
             return self.shape
-        length = self.shape[cut]
+        length = self.shape[blocked]
         parts = -(-length // max(1, self.size // inner))
-        return *(1 for _ in self.shape[:cut]), -(-length // parts), *self.shape[cut + 1 :]
+        return *(1 for _ in self.shape[:blocked]), -(-length // parts), *self.shape[blocked + 1 :]
 
     @property
     def _blocked(self) -> tuple[int, int]:

@@ -56,8 +56,8 @@ class Place:
     @property
     def folder(self) -> Path:
         """What it is called now."""
-        beside = sibling_of(self.path)
-        return beside if identity(beside) == self._is else self.path
+        sibling = sibling_of(self.path)
+        return sibling if identity(sibling) == self._is else self.path
 
     def content(self, key: str, last: int = 0) -> bytes | None:
         """The bytes of a file, or so many last ones; None if it cannot be read."""
@@ -120,8 +120,8 @@ class Place:
     @property
     def is_mine(self) -> bool:
         """Whether the store belongs to this work."""
-        beside = identity(sibling_of(self.path))
-        return (identity(self.path) if beside is None else beside) == self._is
+        mark = identity(sibling_of(self.path))
+        return (identity(self.path) if mark is None else mark) == self._is
 
     def complete(self) -> None:
         """Let it take the place of the store that it replaces, if it does.
@@ -163,30 +163,30 @@ def taken(path: Path, digest: str, overwrite: bool, start: Content) -> Place:
     in which nothing is done, by name.  Raises InputError if another work has it, or something else
     is there; OutputError if it cannot be made.
     """
-    beside = sibling_of(path)
+    sibling = sibling_of(path)
     remove_dead(path.parent)
     with _renaming(path) as aside:
-        if not os.path.lexists(path) and os.path.lexists(beside):
-            beside.rename(path)  # it was replacing another when it was killed
+        if not os.path.lexists(path) and os.path.lexists(sibling):
+            sibling.rename(path)  # it was replacing another when it was killed
         result = _at(path, path)
         if result is not None and result.digest != digest and not overwrite:
             raise InputError(
                 f"{path} holds other work: give the arguments, files and program that it was "
                 "begun with, another name, or --overwrite (overwrite=True) to replace it"
             )
-        new = _at(path, beside)
+        new = _at(path, sibling)
         goes_on = result is None or result.digest == digest
         if new is not None and (goes_on or new.digest != digest):
             if overwrite:
-                aside(beside)
-            elif not if_dead(beside, aside):
+                aside(sibling)
+            elif not if_dead(sibling, aside):
                 raise InputError(
                     f"{path} is being replaced by another work: wait until that ends, or say "
                     "--overwrite (overwrite=True) to stop it"
                 )
             new = None
         place = (result if goes_on else new) or _made(
-            path, path if result is None else beside, start
+            path, path if result is None else sibling, start
         )
         place.hold()
     remove_dead(place.folder)

@@ -153,8 +153,8 @@ class Summary:
         lines, places = [], np.stack([self.counted(name) for name in self.place])
         places = places[:, np.isfinite(places).all(axis=0)]
         if places.shape[1] > 1 and (places.std(axis=1) > 0.0).all():
-            tied = float(np.corrcoef(*places)[0, 1])
-            lines.append(f"correlation of {self.place[0]} and {self.place[1]}: {tied:.4g}")
+            correlation = float(np.corrcoef(*places)[0, 1])
+            lines.append(f"correlation of {self.place[0]} and {self.place[1]}: {correlation:.4g}")
         for region in listed("regions", regions, "regions"):
             one = self.chance(region)
             numbers = finite_array("region", region, "m").ravel()

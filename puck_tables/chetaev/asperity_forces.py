@@ -30,7 +30,7 @@ from puck_tables.io.columns import Dataset, variable
 from puck_tables.result import Result
 
 CURVES = ("crude", "greatest", "undriven", "mean", "landing_phase", "flights_per_period")
-_FLIGHTS = 4000  # landings without a period: then the mean is that of the later half
+_LANDINGS = 4000  # landings without a period: then the mean is that of the later half
 _LONGEST_CYCLE, _SAME_PHASE = 40, 1e-11  # landings, rad: so far back the same phase is looked for
 MOST_LEAPS = 5  # that are told as they are: more are no single steps of the force
 LEAP = 0.2  # of Coulomb's force: by so much the mean force at neighbouring speeds may differ
@@ -218,8 +218,8 @@ def held_round(w: float) -> HopCycle:
     # a, b, V = 1, so that time is phase: the load is then 1/w
     unit, start = Asperity(1.0, 1.0, 1.0 / w, 1.0), math.pi - math.acos(1.0 / w)
     phases, lengths, jumps = [start], list[float](), list[float]()
-    landed, counted = math.nan, _FLIGHTS // 2
-    while len(jumps) < _FLIGHTS:
+    landed, counted = math.nan, _LANDINGS // 2
+    while len(jumps) < _LANDINGS:
         arc = on_support(unit, 0.0, phases[-1], 1.0, leaves=True)
         lengths.append(landing(unit, arc, math.inf))
         late = phases[-1] + lengths[-1]

@@ -21,7 +21,7 @@ FINEST, COARSEST = 1e-13, 1e-2  # relative: finer is rounding, looser is no answ
 _ADMISSIBLE = 1e-9  # of the speeds, at the start
 _RANK = 1e-9  # of the largest singular value: smaller ones are those of dependent constraints
 _PROBE, _PROBE_SLACK = 1e-6, 1e-3  # difference quotient that judges the derivative at the start
-_WORKS = 3  # works that are integrated along with the motion
+_COUNT = 3  # works that are integrated along with the motion
 
 
 @dataclass(frozen=True)
@@ -89,12 +89,12 @@ class ConstrainedMotion:
 
         NaN where the system has no C-displacements at any time, and nothing is said.
         """
-        found = list[float]()
+        residuals = list[float]()
         for k, reaction in enumerate(self.reaction):
             size = float(np.linalg.norm(reaction))
-            works = np.tensordot(self.c_displacements(k), reaction, axes=2)
-            found += [abs(float(work)) / size for work in works if size > 0.0]
-        return max(found, default=float("nan"))
+            of_displacements = np.tensordot(self.c_displacements(k), reaction, axes=2)
+            residuals += [abs(float(work)) / size for work in of_displacements if size > 0.0]
+        return max(residuals, default=float("nan"))
 
 
 def constrained_motion(
@@ -154,9 +154,9 @@ def constrained_motion(
     def slope(time: float, state: FloatArray) -> FloatArray:
         x, v = state[: 2 * size].reshape(2, *shape)
         now = system.instant(x, v, time)
-        works = np.einsum("wnd,nd->w", [now.force, now.friction], now.velocity)
-        given = -now.multipliers @ now.drive
-        return np.concatenate([now.velocity.ravel(), now.acceleration.ravel(), works, [given]])
+        powers = np.einsum("wnd,nd->w", [now.force, now.friction], now.velocity)
+        of_drive = -now.multipliers @ now.drive
+        return np.concatenate([now.velocity.ravel(), now.acceleration.ravel(), powers, [of_drive]])
 
     def ends(time: float, state: FloatArray) -> float:
         x, v = state[: 2 * size].reshape(2, *shape)
@@ -168,8 +168,8 @@ def constrained_motion(
     speed = float(np.abs(start.velocity).max() + np.abs(start.acceleration).max() * span) or 1.0
     scales = [float(np.abs(x).max()) + speed * span, speed, np.sum(system.masses) * speed**2]
     solved = solve_ivp(
-        slope, (t[0], t[-1]), np.concatenate([x.ravel(), v.ravel(), np.zeros(_WORKS)]),
-        method="DOP853", t_eval=t, rtol=tol, atol=tol * np.repeat(scales, [size, size, _WORKS]),
+        slope, (t[0], t[-1]), np.concatenate([x.ravel(), v.ravel(), np.zeros(_COUNT)]),
+        method="DOP853", t_eval=t, rtol=tol, atol=tol * np.repeat(scales, [size, size, _COUNT]),
         events=ends,
     )  # fmt: skip
     if solved.status < 0:
@@ -234,11 +234,11 @@ def _checked_admissible(
             f"{start.residual[which]:g}, not 0; give a velocity that the constraints admit"
         )
     steps = (_PROBE * span, -_PROBE * span)
-    beside = [system.constrained(x + step * v, time + step) for step in steps]
-    ahead, behind = (np.tensordot(a, v, axes=2) + e for a, e in beside)
-    found = system.change(x, v, time)
-    allowed = _PROBE_SLACK * (np.abs(found) + terms / span)
-    wrong = ~(np.abs((ahead - behind) / (2.0 * steps[0]) - found) <= allowed)
+    nearby = [system.constrained(x + step * v, time + step) for step in steps]
+    ahead, behind = (np.tensordot(a, v, axes=2) + e for a, e in nearby)
+    change = system.change(x, v, time)
+    allowed = _PROBE_SLACK * (np.abs(change) + terms / span)
+    wrong = ~(np.abs((ahead - behind) / (2.0 * steps[0]) - change) <= allowed)
     if wrong.any():
         raise InputError(
             f"constraint {int(np.argmax(wrong)) + 1} changes otherwise along the motion than its "

@@ -99,8 +99,8 @@ class ConstrainedSystem:
         moving = (velocity.ravel() - per_mass * (flat.T @ solve(residual))).reshape(shape)
 
         def at(name: str, function: OfState | npt.ArrayLike, wanted: tuple[int, ...]) -> FloatArray:
-            given = function(position, moving, time) if callable(function) else function
-            values = finite_array(f"{name} at t = {time:g} s", given, "SI units")
+            value = function(position, moving, time) if callable(function) else function
+            values = finite_array(f"{name} at t = {time:g} s", value, "SI units")
             if values.shape not in ((), wanted):
                 raise InputError(f"{name} must have the shape {wanted}, got {values.shape}")
             return np.broadcast_to(values, wanted)

@@ -255,9 +255,9 @@ def landing(asperity: Asperity, arc: SlideOrFlight, longest: float) -> float:
             return t  # landed, to rounding: also flights too low to be seen
         closing = vy - asperity.slope * math.sin(x / asperity.length) * vx
         fastest = abs(vx) + (abs(ax) * ahead if ax != 0.0 else 0.0)
-        bend = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
-        root = math.sqrt(max(closing * closing + 2.0 * bend * gap, 0.0))
-        step = 2.0 * gap / (root - closing) if closing < 0.0 else (closing + root) / bend
+        pull = -ay + asperity.amplitude / asperity.length**2 * fastest**2 + abs(ax) * asperity.slope
+        root = math.sqrt(max(closing * closing + 2.0 * pull * gap, 0.0))
+        step = 2.0 * gap / (root - closing) if closing < 0.0 else (closing + root) / pull
         step = min(step, ahead)
         if step <= 4e-16 * t:
             return t
@@ -283,8 +283,8 @@ def _slide(
 
     press.terminal, press.direction = True, -1  # type: ignore[attr-defined]
     # over a wave the load and the pull give no more energy
-    given = asperity.load * asperity.amplitude + math.pi * abs(asperity.pull) * asperity.length
-    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + 4.0 * given / asperity.mass)
+    gained = asperity.load * asperity.amplitude + math.pi * abs(asperity.pull) * asperity.length
+    fastest = math.sqrt(arc.vx**2 + arc.vy**2 + 4.0 * gained / asperity.mass)
     solved = solve_ivp(
         slope, (arc.time, end), [arc.x, arc.vx], "DOP853", wanted, events=press, rtol=_TOL,
         atol=_TOL * np.array([asperity.length, fastest]),

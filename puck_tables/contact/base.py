@@ -79,10 +79,10 @@ class Base:
         middle = (float(first[0] / area), float(first[1] / area))
         centre = middle
         if self.centre is not None:
-            given = finite_array("centre of mass", self.centre, "m")
-            if given.shape != (2,):
+            place = finite_array("centre of mass", self.centre, "m")
+            if place.shape != (2,):
                 raise InputError("centre of mass must be two numbers (x, y), m")
-            centre = (float(given[0]), float(given[1]))
+            centre = (float(place[0]), float(place[1]))
             if math.dist(centre, middle) <= _CENTRED * self._reach_from(middle):
                 centre = middle
         object.__setattr__(self, "centre", centre)
@@ -117,15 +117,15 @@ class Base:
         0.005
         """
         outside = _corners_of(corners, name, 1.0)
-        cut = tuple(
+        openings = tuple(
             _corners_of(hole, f"{name}: hole", -1.0) for hole in listed("holes", holes, "outlines")
         )
-        for n, hole in enumerate(cut):
+        for n, hole in enumerate(openings):
             if crossing(outside, hole) or not inside(outside, hole[0]):
                 raise InputError(f"{name}: a hole must lie in the outline")
-            if any(overlap(((hole[::-1],), ()), ((other[::-1],), ())) for other in cut[:n]):
+            if any(overlap(((hole[::-1],), ()), ((other[::-1],), ())) for other in openings[:n]):
                 raise InputError(f"{name}: two holes overlap, touch, or one lies in the other")
-        return cls((outside, *cut), (), centre, name)
+        return cls((outside, *openings), (), centre, name)
 
     @classmethod
     def disc(cls, radius: float, *, centre: tuple[float, float] | None = None) -> Self:
@@ -358,11 +358,11 @@ def _corners_of(corners: npt.ArrayLike, name: str, sense: float) -> Corners:
         raise InputError(f"{name}: a corner stands twice in a row")
     x, y = (points - points.mean(axis=0)).T
     area = float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
-    found = tuple(map(tuple, points.tolist()))
-    if crossing(found):
+    outline = tuple(map(tuple, points.tolist()))
+    if crossing(outline):
         raise InputError(f"{name}: its sides cross, or touch each other: give corners in order")
     if area * sense < 0.0:
         if sense > 0.0:
             say(f"{name}: its corners stand clockwise; they are taken the other way round")
-        found = found[::-1]
-    return found
+        outline = outline[::-1]
+    return outline

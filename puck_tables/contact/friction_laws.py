@@ -84,9 +84,9 @@ class FrictionLaw:
         InputError
             If a number is out of range; all of them are named.
         """
-        given = {name: getattr(self, spec.name) for name, spec in specs(type(self)).items()}
+        numbers = {name: getattr(self, spec.name) for name, spec in specs(type(self)).items()}
         reading = Reading([], None)
-        values = read_values(type(self), given, "", reading)
+        values = read_values(type(self), numbers, "", reading)
         if values is None:
             raise InputError(f"friction law {self.kind}: {'; '.join(reading.errors)}")
         law = type(self)(**values)
@@ -289,8 +289,8 @@ def law_of_numbers(kind: str, numbers: list[float]) -> FrictionLaw:
     law: Any = NAMED.get(kind)
     if law is None or len(numbers) != len(specs(law)) - 1:
         raise InputError(f"{kind!r} with {len(numbers)} numbers is no friction law")
-    found: FrictionLaw = law(*numbers)
-    return found.checked()
+    made: FrictionLaw = law(*numbers)
+    return made.checked()
 
 
 def pieces_of_function(

@@ -48,8 +48,9 @@ def law_moments(
     while waiting:
         low, high = waiting.pop()
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        powers = _parts(law, low, done, middle + half * _NODES) @ _THROUGH
-        missed = powers @ _AT_PROBES - _parts(law, low, done, middle + half * _PROBES)
+        nodes, probes = (np.minimum(middle + half * at, high) for at in (_NODES, _PROBES))
+        powers = _parts(law, low, done, nodes) @ _THROUGH  # rounding may lead beyond a law's end
+        missed = powers @ _AT_PROBES - _parts(law, low, done, probes)
         shortest = speeds[-1] * 2.0**-_OCTAVES if low == 0.0 else _LEAST * low
         if np.abs(missed).max() > _MISS * largest and high - low > shortest:
             waiting += [(middle, high), (low, middle)]

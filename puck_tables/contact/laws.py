@@ -43,7 +43,7 @@ _SLACK = 1e-9  # of δ/δ_max: names and files carry twelve digits
 _LEAST_STEP = 1e-12  # between the radii of a profile
 _LEAST_SPREAD = 2.5e-7  # root mean square, of the radius at which its load stands
 _TIP = 1e-5  # the least radius that matters there
-_MOST_BENDS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
+_MOST_KINKS, _STRAIGHT = 40, 1e-12  # the latter of the largest pressure
 _SECANTS = 14  # steps; then it is halved, which always ends
 _LARGEST = 1e-5  # a limit ratio above 1e5 is none: there the two rates agree to rounding
 MAX_PROFILE_BYTES = 1 << 24  # bytes: more is no profile
@@ -272,9 +272,9 @@ def _edges(radii: FloatArray, pressure: FloatArray) -> tuple[float, ...]:
     middle, next to φ = π/2, the friction ratios are like x² ln|x|: radii that shrink towards it.
     """
     slope = np.concatenate([[0.0], np.diff(pressure) / np.diff(radii)])
-    bend = np.abs(np.diff(slope))[1:] * np.minimum(np.diff(radii)[:-1], np.diff(radii)[1:])
-    sharp = np.flatnonzero(bend > _STRAIGHT)
-    sharp = sharp[np.argsort(-bend[sharp], kind="stable")[:_MOST_BENDS]]
+    kink_size = np.abs(np.diff(slope))[1:] * np.minimum(np.diff(radii)[:-1], np.diff(radii)[1:])
+    sharp = np.flatnonzero(kink_size > _STRAIGHT)
+    sharp = sharp[np.argsort(-kink_size[sharp], kind="stable")[:_MOST_KINKS]]
     ends = np.append(radii[:1][radii[:1] > 0.0], 1.0)
     if radii[0] == 0.0 and abs(slope[1]) * radii[1] > _STRAIGHT:
         shrinking = radii[1] * 0.1 ** np.arange(1.0, 6.0)
@@ -344,12 +344,12 @@ def limit_ratio(law: Law, delta: float = 0.0, gyration: float = HOMOGENEOUS) -> 
             middle = 0.5 * (low + high)
         if not low < middle < high:
             return float(np.tan(low))
-        found = _sliding_decays_faster(law, middle, delta, gyration)
-        if found > 0.0:
-            low, above, below = middle, found, 0.5 * below if side > 0 else below
+        at_middle = _sliding_decays_faster(law, middle, delta, gyration)
+        if at_middle > 0.0:
+            low, above, below = middle, at_middle, 0.5 * below if side > 0 else below
             side = 1
         else:
-            high, below, above = middle, found, 0.5 * above if side < 0 else above
+            high, below, above = middle, at_middle, 0.5 * above if side < 0 else above
             side = -1
     raise AssertionError
 

@@ -37,7 +37,7 @@ _SEGMENT_NODES = 20  # to rounding: test_segment_and_patch_rule
 SEGMENT_RULE = np.stack(np.polynomial.legendre.leggauss(_SEGMENT_NODES))  # on [−1, 1]
 _GAUSS_2 = 3.0**-0.5  # node of Gauss's rule of two points, exact up to degree 3
 _STEPS = 60  # of Newton's method: then another guess is tried
-_SETTLED = 1e-7  # a step of that size leaves an error of its square
+_CONVERGED = 1e-7  # a step of that size leaves an error of its square
 _EASY_DELTA = 3.9  # dimensionless: up to it the guess leads to the solution
 _FOLLOWED = 33  # heights from there to the wanted one: each is a good guess for the next
 _MAX_TURN = 0.3  # radians a step
@@ -160,9 +160,9 @@ def _lines(
     # lines, not rays: a modulo π
     first, second = (np.where(np.abs(e) > 0.5 * np.pi, e - np.copysign(np.pi, e), e) for e in ends)
     edge = np.full_like(first, 0.5 * np.pi)
-    cuts = np.stack([-edge, np.minimum(first, second), np.maximum(first, second), edge], axis=-1)
-    half = 0.5 * np.diff(cuts)[..., None]
-    middle = 0.5 * (cuts[:, 1:] + cuts[:, :-1])[..., None]
+    breaks = np.stack([-edge, np.minimum(first, second), np.maximum(first, second), edge], axis=-1)
+    half = 0.5 * np.diff(breaks)[..., None]
+    middle = 0.5 * (breaks[:, 1:] + breaks[:, :-1])[..., None]
     size = len(ratio), -1
     return (middle + half * LINE_RULE[0]).reshape(size), (half * LINE_RULE[1]).reshape(size)
 
@@ -237,7 +237,7 @@ def _newton(
         room = 1.0 - offset[moving]
         offset[moving] = 1.0 - np.clip(room - step, 0.5 * room, 2.2 * room)
         bearing[moving] += np.clip(turn, -_MAX_TURN, _MAX_TURN)
-        moving[moving] = ~((np.abs(step) <= _SETTLED * room) & (np.abs(turn) <= _SETTLED))
+        moving[moving] = ~((np.abs(step) <= _CONVERGED * room) & (np.abs(turn) <= _CONVERGED))
         if not moving.any():
             break
     return Chord(offset, bearing), moving

@@ -40,9 +40,9 @@ def base_of(text: str) -> Base:
         centre = _place(f"base {shown(text)}: the centre of mass is @X,Y, got @{place}", place)
     if shape.lower().endswith(SUFFIXES):
         corners, *holes = outlines_of(shape)
-        found = Base.polygon(corners, holes=holes, centre=centre, name=as_utf8(text))
-        question("base", found.reach, "m", OF_A_PUCK)
-        return found
+        base = Base.polygon(corners, holes=holes, centre=centre, name=as_utf8(text))
+        question("base", base.reach, "m", OF_A_PUCK)
+        return base
     kind, _, sizes = shape.partition(":")
     if kind in ("polygon", "feet"):
         return _by_places(kind, sizes, text, centre)
@@ -57,8 +57,8 @@ def base_of(text: str) -> Base:
         raise InputError(
             f"base {shown(text)}: {kind} takes {count} lengths, an x between; choose {NAMES}"
         )
-    found = make(*lengths, centre=centre)
-    return replace(found, name=text) if at else found
+    base = make(*lengths, centre=centre)
+    return replace(base, name=text) if at else base
 
 
 def _by_places(
@@ -79,14 +79,14 @@ def _by_places(
     parts = [part.split(",") for part in rest]
     loads = None
     if all(len(one) == 3 for one in parts):
-        given = [one.pop() for one in parts]
+        values = [one.pop() for one in parts]
         loads = [
             float(one) if is_number(one) else number_in("a load of a foot", one, "N")
-            for one in given
+            for one in values
         ]
     places = [_place(wrong, ",".join(one)) for one in parts]
-    found = Base.feet(places, radius, centre=centre, loads=loads)
-    return replace(found, name=text)
+    base = Base.feet(places, radius, centre=centre, loads=loads)
+    return replace(base, name=text)
 
 
 def _place(wrong: str, text: str) -> tuple[float, float]:

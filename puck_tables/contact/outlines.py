@@ -28,11 +28,11 @@ def crossing(outline: Outline, other: Outline | None = None) -> bool:
     number = np.arange(len(a))
     for begin in range(0, len(p), _BLOCK):
         one = slice(begin, begin + _BLOCK)
-        hit = _meet(p[one, None], q[one, None], a[None], b[None])
+        cross = _meet(p[one, None], q[one, None], a[None], b[None])
         if own:  # a side meets itself, and those beside it at their common corner
             apart = np.abs(np.arange(len(p))[one, None] - number[None])
-            hit &= (apart > 1) & (apart < len(p) - 1)
-        if hit.any():
+            cross &= (apart > 1) & (apart < len(p) - 1)
+        if cross.any():
             return True
     return own and _folds(p)
 
@@ -72,10 +72,10 @@ def inside(outline: Outline, place: tuple[float, float]) -> bool:
 def _distance(outline: Outline, place: tuple[float, float]) -> float:
     """How far a place is from the sides."""
     p = np.array(outline, np.float64)
-    way = np.roll(p, -1, axis=0) - p
+    along = np.roll(p, -1, axis=0) - p
     off = np.array(place) - p
-    share = np.clip((off * way).sum(axis=1) / (way * way).sum(axis=1), 0.0, 1.0)
-    return float(np.hypot(*(off - share[:, None] * way).T).min())
+    share = np.clip((off * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
+    return float(np.hypot(*(off - share[:, None] * along).T).min())
 
 
 def _holds(shape: Shape, place: tuple[float, float]) -> bool:

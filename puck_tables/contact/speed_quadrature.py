@@ -71,13 +71,13 @@ def speed_integrals(
     direction = slip_direction(angle)
     evaluate, breaks = _evaluation(law, Q, direction)
     ratio, fast, flat_Q = np.ravel(direction.ratio), np.ravel(direction.fast_spin), np.ravel(Q)
-    found = np.empty((4, ratio.size))
+    integrals = np.empty((4, ratio.size))
     for inside, integrate in ((True, _centre_inside), (False, _centre_outside)):
         chosen = np.flatnonzero(fast == inside)
         for start in range(0, chosen.size, _CHUNK):
             part = chosen[start : start + _CHUNK]
-            found[:, part] = integrate(ratio[part], flat_Q[part], evaluate, breaks)
-    a, b, d, e = (row.reshape(angle.shape) for row in found)
+            integrals[:, part] = integrate(ratio[part], flat_Q[part], evaluate, breaks)
+    a, b, d, e = (row.reshape(angle.shape) for row in integrals)
     return PatchIntegrals(a, b, b - d, d, e)
 
 

@@ -147,10 +147,10 @@ def _pile(phi: FloatArray, radii: FloatArray, pressure: FloatArray) -> FloatArra
     low, high = (np.broadcast_to(ends, (phi.size, slope.size)) for ends in (radii[:-1], radii[1:]))
     away = np.maximum(low - centre[:, None], centre[:, None] - high)
     far = away > 0.5 * (high - low)
-    cut = np.clip(centre[:, None], low, high)
+    bounded = np.clip(centre[:, None], low, high)
     for first, last, chosen, nodes, shares in (
-        (low, high, far, _FAR_NODES, _FAR_SHARES), (low, cut, ~far, _NODES, _SHARES),
-        (cut, high, ~far, _NODES, _SHARES),
+        (low, high, far, _FAR_NODES, _FAR_SHARES), (low, bounded, ~far, _NODES, _SHARES),
+        (bounded, high, ~far, _NODES, _SHARES),
     ):  # fmt: skip
         which, between = np.nonzero(chosen & (last > first) & (slope != 0.0))
         start, length = first[which, between], (last - first)[which, between]

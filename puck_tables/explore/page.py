@@ -58,11 +58,11 @@ def _laws() -> str:
     """A script that fills ``puckLaws``: what is to be known of each law, and its look-ups."""
     lines = ["const puckLaws = {};"]
     for law in LAWS:
-        told = {"title": law.title, "gyration": law.gyration, "tallest": law.tallest}
+        described = {"title": law.title, "gyration": law.gyration, "tallest": law.tallest}
         name = json.dumps(law.name)
         lines += [
             _look_ups(law),
-            f"puckLaws[{name}] = {{ ...{json.dumps(told)}, tables: globalThis.puckTables }};",
+            f"puckLaws[{name}] = {{ ...{json.dumps(described)}, tables: globalThis.puckTables }};",
         ]
     return "\n".join(lines)
 

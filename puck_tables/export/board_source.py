@@ -31,10 +31,10 @@ from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import setting_off
-from puck_tables.world.bench import FOUND_COLUMNS, LACKS_PIECES, LED, LET_GO
+from puck_tables.world.bench import LACKS_PIECES, LED, LET_GO, REPORT_COLUMNS
 from puck_tables.world.engine_state import EVENTS
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS
-from puck_tables.world.layout import LIGHTNESS, RADIUS
+from puck_tables.world.layout import INVERSE_MASS, RADIUS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.segment import GONE
 from puck_tables.world.shipped import (
@@ -91,7 +91,7 @@ def named(ship: Shipped) -> dict[str, Any]:
     return {
         "row": orders.rows, "disc": orders.discs, "time": orders.time, "after": orders.after,
         "numbers": store.numbers, "whole": store.whole, "pieces": store.pieces, "due": store.due,
-        "found": ship.found, "states": ship.states, "moving": ship.moving,
+        "found": ship.reports, "states": ship.states, "moving": ship.moving,
         "contacts": room.contacts, "depth": room.work,
     }  # fmt: skip
 
@@ -101,8 +101,8 @@ def sizes_of(ship: Shipped) -> dict[str, int]:
     wholes = [ship.bench.whole.ctypes.data, ship.bench.engine.counts.ctypes.data]
     return {
         "numbers": ship.bench.numbers.size, "whole": ship.bench.whole.size,
-        "pieces": ship.store.pieces[0].size, "columns": PIECE_COLUMNS, "event": FOUND_COLUMNS,
-        "events": len(ship.found),
+        "pieces": ship.store.pieces[0].size, "columns": PIECE_COLUMNS, "event": REPORT_COLUMNS,
+        "events": len(ship.reports),
         "shared": ship.bench.shared, "used": (wholes[1] - wholes[0]) // 8 + g.N_PIECES,
     }  # fmt: skip
 
@@ -115,7 +115,7 @@ def lines_of(board: Worlds) -> list[str]:
 def discs_of(board: Worlds) -> tuple[FloatArray, Any]:
     """The radius of each puck, m, and whether it is driven."""
     discs = board._first._engine.discs[board._place]
-    return discs[:, RADIUS], discs[:, LIGHTNESS] == 0.0
+    return discs[:, RADIUS], discs[:, INVERSE_MASS] == 0.0
 
 
 def objects(folder: str, triple: str, ship: Shipped, known: list[Any], symbol: str) -> list[str]:
@@ -254,9 +254,9 @@ class BoardSource:
             If a file exists or cannot be written.
         """
         instance("path", path, str, Path)
-        beside = companion_path(path, self.language, self.name)
+        companion = companion_path(path, self.language, self.name)
         check_target(path, overwrite)
-        write_bytes(beside, self.companion, overwrite)
+        write_bytes(companion, self.companion, overwrite)
         write_bytes(path, self.text.encode(), overwrite)
 
 

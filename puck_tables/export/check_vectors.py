@@ -39,7 +39,7 @@ _LAUNCHES: Sequence[tuple[float, ...]] = (
 )
 _SHARES = (0.0, 0.1, 0.5, 0.9, 0.99)  # of the stop time
 _ANGLES = (-0.5 * math.pi, -0.25 * math.pi, -0.3, 0.0, 0.8, 1.4)
-GIVEN = {"stop": 6, "state": 7, "turn": 6, "resultants": 2, "wrench": 4, "step": 3}  # numbers
+INPUTS = {"stop": 6, "state": 7, "turn": 6, "resultants": 2, "wrench": 4, "step": 3}  # numbers
 _HEIGHTS = (0.0, 1.0)  # dimensionless: both ends of the tables
 
 
@@ -57,9 +57,9 @@ def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> 
     cases = {}
     for name in functions:
         rows = made[name](Puck(radius=1.0) if kind is None else kind)
-        given = GIVEN[name]
+        inputs = INPUTS[name]
         cases[name] = rows.shape[1], tuple(
-            value if n < given else float(f"{value:.{digits}g}")
+            value if n < inputs else float(f"{value:.{digits}g}")
             for row in rows.tolist() for n, value in enumerate(row)
         )  # fmt: skip
     return cases
@@ -144,8 +144,8 @@ def _resultants(puck: Puck) -> FloatArray:
 def _slips(puck: Puck) -> FloatArray:
     """Vx, vy and spin of launches of a base: about places in it, on its rim, far away."""
     spins = np.array([0.0, 1e-3, 0.3, -1.0, 2.0, -9.0, 1e3])
-    ways = np.exp(1j * np.arange(spins.size))
-    return np.column_stack([ways.real, ways.imag, np.round(spins / puck.gyration, 6)]).round(6)
+    units = np.exp(1j * np.arange(spins.size))
+    return np.column_stack([units.real, units.imag, np.round(spins / puck.gyration, 6)]).round(6)
 
 
 def _of_unit(puck: Puck) -> Puck:
@@ -156,8 +156,8 @@ def _of_unit(puck: Puck) -> Puck:
 def _wrenches(puck: Puck) -> FloatArray:
     slips = _slips(puck)
     angles = np.round(0.7 * np.arange(len(slips)), 6)
-    found = _of_unit(puck).wrench(slips[:, :2], slips[:, 2], angles)
-    return np.column_stack([slips, angles, found.force, found.torque])
+    wrenches = _of_unit(puck).wrench(slips[:, :2], slips[:, 2], angles)
+    return np.column_stack([slips, angles, wrenches.force, wrenches.torque])
 
 
 def _steps(puck: Puck) -> FloatArray:

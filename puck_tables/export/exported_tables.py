@@ -28,9 +28,9 @@ Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constant
 
 # Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
 # is made of all of them keeps it (measured, tests/test_export.py).
-_STOP, _CURVE, _CONSTANT = 0.5, 0.3, 0.02
+_STOP, _SIMILARITY, _CONSTANT = 0.5, 0.3, 0.02
 # the same under another pressure law
-_LAW_STOP, _LAW_ORBIT, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
+_LAW_STOP, _LAW_MOTION, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
 # of a slip that friction takes in a step, and so many times the least part of a base over its reach
 _SHARE, _FEET = 0.05, 8.0
 
@@ -46,11 +46,11 @@ def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
 @lru_cache(maxsize=8)
 def _shipped(tol: float) -> dict[str, SplineFit]:
     table = StopTable.shipped()
-    stops, curve, inverse = functions_of(table)
+    stops, parts, inverse = functions_of(table)
     return {
         "STOP": spline_fit(stops, _STOP * tol, haste=2),
-        "CURVE": spline_fit(curve, _CURVE * tol),
-        "INVERSE": spline_fit(inverse, _CURVE * tol),
+        "SIMILARITY": spline_fit(parts, _SIMILARITY * tol),
+        "INVERSE": spline_fit(inverse, _SIMILARITY * tol),
         "CONSTANTS": fit_constants(table.constants, _CONSTANT * tol),
     }
 
@@ -64,10 +64,10 @@ def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
         "SPIN_TIME": values.spin_time, "LONGEST": values.longest, "SIDES": sides,
     }  # fmt: skip
     tables, constants = _written(_fit_within(values, parts, tol), constants)
-    way = np.where(np.arange(sides) % 2, -1.0, 1.0)
+    sign = np.where(np.arange(sides) % 2, -1.0, 1.0)
     lines = {
         "BORDERS": _short(values.borders), "ORIGINS": _short(values.origins),
-        "SCALES": _short(way / values.extents),
+        "SCALES": _short(sign / values.extents),
     }  # fmt: skip
     if "state" in parts:
         constants |= {"REACH": REACH, "END": values.limit_motions.end}
@@ -85,7 +85,7 @@ def _fit_within(
         result["STOP"] = spline_fit(values.stops, _LAW_STOP * tol, haste=2)
     if "state" in parts:
         try:
-            result["ORBIT"] = spline_fits(values.limit_motions.parts, _LAW_ORBIT * tol)
+            result["MOTION"] = spline_fits(values.limit_motions.parts, _LAW_MOTION * tol)
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
@@ -113,9 +113,9 @@ def base_tables(kind: Puck) -> Tables:
     sides: list[float] = []
     for outline in shape.outlines:
         for one, two in zip(outline, outline[1:] + outline[:1], strict=True):
-            way = np.subtract(two, one)
-            length = float(np.hypot(*way))
-            sides += [*np.subtract(one, shape.middle).tolist(), *(way / length).tolist(), length]
+            along = np.subtract(two, one)
+            length = float(np.hypot(*along))
+            sides += [*np.subtract(one, shape.middle).tolist(), *(along / length).tolist(), length]
     discs = [
         number for x, y, radius, sign in shape.discs
         for number in (*np.subtract((x, y), shape.middle).tolist(), radius, sign)

@@ -43,7 +43,7 @@ _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
 _LAST, _STEP = 40.0, 1e-13  # the largest z that is followed, and the local error
 _TAIL = 0.1  # of the error asked for: what may still change after the end of a table
 _TRIED = 401  # places at which it is seen what still changes
-_BESIDE = 0.02  # of ln(rω/v): how far beside the limit it is seen how fast it draws orbits
+_NEARBY = 0.02  # of ln(rω/v): how far beside the limit it is seen how fast it draws orbits
 _INSIDE = 0.01  # a line so far from all limits is on the orbit
 
 
@@ -139,8 +139,8 @@ class LawValues:
     def phi(self) -> FloatArray:
         """Slip angles of the nodes (sides, nodes)."""
         sides = np.arange(self.extents.size)
-        way = np.where(sides % 2, -1.0, 1.0)
-        off = (way * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
+        sign = np.where(sides % 2, -1.0, 1.0)
+        off = (sign * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
         c = self.origins[:, None] + off
         phi = np.arctan2(1.0 + c, 1.0 - c)
         # next to pure sliding and pure spin from the distance
@@ -218,7 +218,7 @@ def _limit_motions(values: LawValues) -> LimitMotions:
 
     slow_end, fast_end = slopes(np.full(HEIGHTS, -600.0)), slopes(np.full(HEIGHTS, 600.0))
     u_limit = _u(limits)
-    drawn = (slopes(u_limit + _BESIDE)[0] - slopes(u_limit - _BESIDE)[0]) / (2.0 * _BESIDE)
+    drawn = (slopes(u_limit + _NEARBY)[0] - slopes(u_limit - _NEARBY)[0]) / (2.0 * _NEARBY)
     # only a scale: a straight line in δ² needs no further powers
     drawn = np.polyval(np.polyfit(shares**2, drawn, 1), shares**2)
     rates = [-slow_end[0], fast_end[0], drawn]
@@ -232,13 +232,13 @@ def _limit_motions(values: LawValues) -> LimitMotions:
         sign, end = (-1.0, 2) if ahead else (1.0, fast)
         rate, turning, unit = rates[end], turnings[end], units[end]
         begin = np.concatenate([_u(starts[fast]), np.zeros(HEIGHTS)])
-        way = solve_ivp(
+        solution = solve_ivp(
             lambda _, y: (slopes(y) / rate).ravel(), (0.0, sign * _LAST), begin, method="DOP853",
             rtol=_STEP, atol=_STEP, dense_output=True,
         ).sol  # fmt: skip
 
         def result(z: FloatArray) -> FloatArray:
-            u, heading = way(sign * z).reshape(2, HEIGHTS, -1).swapaxes(1, 2)
+            u, heading = solution(sign * z).reshape(2, HEIGHTS, -1).swapaxes(1, 2)
             towards = -1.0 if fast else 1.0
             if ahead:
                 c = np.tanh(0.5 * u) - limits

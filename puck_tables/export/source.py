@@ -16,7 +16,7 @@ from puck_tables._core.arrays import instance, listed, real, shown
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import AccuracyError, InputError
-from puck_tables.export.check_vectors import GIVEN, cases_of
+from puck_tables.export.check_vectors import INPUTS, cases_of
 from puck_tables.export.exported_tables import base_tables, law_tables, plain_tables
 from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
@@ -202,8 +202,8 @@ def checked_request(language: str, what: str | Iterable[str], tol: float) -> tup
             f"tol must be from {FINEST:g} to {COARSEST:g} for exported files, got {error:g}: give "
             "a tol in that range"
         )
-    asked = what.split(",") if isinstance(what, str) else listed("what", what, "names")
-    names = [one.strip() if isinstance(one, str) else one for one in asked]
+    wanted = what.split(",") if isinstance(what, str) else listed("what", what, "names")
+    names = [one.strip() if isinstance(one, str) else one for one in wanted]
     for name in names:
         if not isinstance(name, str) or name not in PARTS:
             raise InputError(
@@ -343,10 +343,10 @@ def _self_test(widths: Mapping[str, int]) -> dict[str, ast.FunctionDef]:
     """The tests of each function by vectors of so many numbers, and that of the whole file."""
     text = ""
     for name, width in widths.items():
-        given = GIVEN[name]
-        arguments = ", ".join(["c[k]", *(f"c[k + {n}]" for n in range(1, given))])
+        inputs = INPUTS[name]
+        arguments = ", ".join(["c[k]", *(f"c[k + {n}]" for n in range(1, inputs))])
         text += _MISSES.format(
-            name=name, upper=name.upper(), width=width, given=given, answers=width - given,
+            name=name, upper=name.upper(), width=width, given=inputs, answers=width - inputs,
             arguments=f"0.0, 0.0, 0.0, {arguments}, 1.0, 0.5" if name == "step" else arguments,
             unit=_UNITS.get(name, "1.0"),
         )  # fmt: skip

@@ -105,8 +105,8 @@ class Braces(ABC):
         self._here = node.name
         body = node.body[1:] if text is not None else node.body
         lines = [self.signature(node) + " {", *self._block(body, 1), "}"]
-        told = [] if text is None else [self.comment(text.splitlines())]
-        return "\n".join([*told, *self._before, *lines])
+        heading = [] if text is None else [self.comment(text.splitlines())]
+        return "\n".join([*heading, *self._before, *lines])
 
     def _block(self, statements: list[ast.stmt], depth: int) -> list[str]:
         return [line for one in statements for line in self._statement(one, depth)]
@@ -219,9 +219,9 @@ def _folded(pad: str, line: str) -> list[str]:
     lines: list[str] = []
     indent = pad
     while len(indent) + len(line) > _LINE and " " in line[: _LINE - len(indent)]:
-        cut = line.rindex(" ", 0, _LINE - len(indent))
-        lines.append(indent + line[:cut])
-        line, indent = line[cut + 1 :], pad + "\t\t"
+        end = line.rindex(" ", 0, _LINE - len(indent))
+        lines.append(indent + line[:end])
+        line, indent = line[end + 1 :], pad + "\t\t"
     return [*lines, indent + line]
 
 

@@ -133,16 +133,16 @@ def _named(path: str | Path, names: Sequence[str], owners: Sequence[str] = ()) -
         read = [Heading("") if one.puck == "instance" else one for one in read]
     read = _own_times(_one_clock(names, read))
     rates, line = "", on_a_line(names, read)
-    told = {one.role for one in line or read}
-    if not told & {"x", "y"}:
+    roles = {one.role for one in line or read}
+    if not roles & {"x", "y"}:
         for kind, into in _RATES:
-            if told & {role for role, other in into.items() if other}:
+            if roles & {role for role, other in into.items() if other}:
                 rates = kind
                 read = [one._replace(role=into.get(one.role, one.role)) for one in read]
                 line = read if len({one.role for one in read} & {"x", "y"}) == 1 else None
                 break
         else:
-            if "a" in told:
+            if "a" in roles:
                 raise InputError(f"{path} {NO_ACCELERATIONS}")
     read = [Heading("") if one.role in _MOVES else one for one in line or read]
     apart = {one.puck for one in read if one.role == "x"} == {"c", "m"}  # a centre and its mark

@@ -286,8 +286,8 @@ def on_the_floor(path: str | Path, film: Film, body: TrackedBody, up: str | None
         flat = np.stack([sign * points[:, k] for k, sign in _FLOOR[axis]], axis=1)
         rise = _span(points[:, at])
         far = float(np.abs(points[np.isfinite(points)]).max(initial=0.0))
-        way = max(_span(one) for one in flat.T)
-        if up is None and rise > max(_RISES * way, _STIRS * far):
+        length = max(_span(one) for one in flat.T)
+        if up is None and rise > max(_RISES * length, _STIRS * far):
             raise InputError(
                 f"{path} is of places in space, and {' '.join(filter(None, (body.name, name)))} "
                 f"goes up and down by {rise:.3g} if {axis} points up: say which axis does (--up "

@@ -110,8 +110,8 @@ Heading(role='vx', puck='', unit=''))
     if name == "TID" or (whose and whose <= _ID | _NUMBERING and whose & _ID):
         return Heading("" if whose == {"frame", "id"} else "id")  # of axes, in ROS
     if (rate := _rate(lowered, unit_text)) is not None:
-        found, others = rate
-        return Heading(found, _merged(tokens, [result[n] for n in others]), unit_text)
+        base, others = rate
+        return Heading(base, _merged(tokens, [result[n] for n in others]), unit_text)
     role = next((one for one in _FIRST if one in roles), "")
     if not role:
         return Heading("")
@@ -158,9 +158,9 @@ def _rate(words: Sequence[str], unit: str) -> tuple[str, list[int]] | None:
             return ("a" if kind == "a" else kind + axis), [k for k in others if k != n]
     axis = next((word for word in reversed(words) if word in ("x", "y", "z", "w")), "")
     if axis == "w":
-        told = [n for n in others if words[n] in _QUATERNION]
-        mine = [n for n in others if n not in told and words[n] != "w"]
-        return ("qw", mine) if told else None
+        quaternion = [n for n in others if words[n] in _QUATERNION]
+        mine = [n for n in others if n not in quaternion and words[n] != "w"]
+        return ("qw", mine) if quaternion else None
     kinds = {kind for kind, size in (("v", "velocity"), ("w", "spin"), ("a", "acceleration"))
              if unit and unit_size(unit, size) is not None and unit not in ("g",)}  # fmt: skip
     named = {_RATE_WORDS[words[n]]: n for n in reversed(others) if words[n] in _RATE_WORDS}
@@ -187,12 +187,12 @@ def _altered(text: str, role: str, other: str) -> InputError:
 
 def _merged(text: str, words: Sequence[tuple[str, int, int]]) -> str:
     """Words as they stood, with what was between neighbours."""
-    joined, end = "", 0
+    merged, end = "", 0
     for word, start, stop in words:
-        between = text[end:start] if joined else ""
-        joined += (between if not _TOKEN.search(between) else "_") + word
+        between = text[end:start] if merged else ""
+        merged += (between if not _TOKEN.search(between) else "_") + word
         end = stop
-    return joined
+    return merged
 
 
 def headings(names: Sequence[str]) -> list[Heading]:
@@ -204,9 +204,9 @@ def headings(names: Sequence[str]) -> list[Heading]:
     read = [heading(name) for name in names]
     numbers = {one.puck for one in read if one.puck.isdigit()}
     for name, one in zip(names, read, strict=True):
-        found = _TENS.match(name) if one.role in ("x", "y") else None
-        if found and (len(numbers) == 1 or not found[1].isdigit()):
-            raise _altered(name, one.role, found[1])
+        tens = _TENS.match(name) if one.role in ("x", "y") else None
+        if tens and (len(numbers) == 1 or not tens[1].isdigit()):
+            raise _altered(name, one.role, tens[1])
     if any(re.match(r"v[_ ]?[xy]\b", name.strip().lower()) for name in names):
         read = [Heading("") if one.puck.lower() == "a" else one for one in read]  # a_x goes with it
     whole = {one.puck for one in read if one.role == "qw"}
@@ -252,20 +252,20 @@ def on_a_line(names: Sequence[str], read: Sequence[Heading]) -> list[Heading] | 
     """
     words = [{word.lower() for word in _TOKEN.findall(name)} for name in names]
     result = list(read)
-    told = {one.role for one in read} & {"x", "y"}
+    roles = {one.role for one in read} & {"x", "y"}
     named = [n for n, one in enumerate(read) if not one.role and words[n] & {*_ALONG}]
     bare = [n for n, name in enumerate(names) if parted(name.strip())[0].lower() in _BARE]
-    if not told and named:
+    if not roles and named:
         words_of = "|".join(sorted(_ALONG, key=len, reverse=True))
         each = partial(re.compile(rf"\b({words_of})\b", re.IGNORECASE).sub, "x")
         result = headings([each(name) if n in named else name for n, name in enumerate(names)])
-        told = {"x"}
-    elif not told and len(bare) == 1:
+        roles = {"x"}
+    elif not roles and len(bare) == 1:
         unit = parted(names[bare[0]].strip())[1]
         result[bare[0]] = Heading("x", "", unit_word(unit, "length"))
-        told = {"x"} if bool(unit) == bool(unit_word(unit, "length")) else set()
+        roles = {"x"} if bool(unit) == bool(unit_word(unit, "length")) else set()
     other = [
         n for n, one in enumerate(result)
         if (not one.role and words[n] and not words[n] & _OTHER) or one.role == "z"
     ]  # fmt: skip
-    return result if len(told) == 1 and not other else None
+    return result if len(roles) == 1 and not other else None

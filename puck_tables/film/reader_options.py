@@ -63,13 +63,13 @@ class ReaderOptions:
         instance("y_down", self.y_down, bool, type(None))
         instance("toward", self.toward, str, type(None))
         for name in ("centre", "pucks"):
-            given = getattr(self, name)
-            names = given.split(",") if isinstance(given, str) else given
+            option = getattr(self, name)
+            names = option.split(",") if isinstance(option, str) else option
             if names is not None:
                 instance(name, names, list, tuple)
                 put(name, [str(one).strip() for one in names])
                 if not names or not all(getattr(self, name)):
-                    raise InputError(f"{name} must be names with commas, got {given!r:.40}")
+                    raise InputError(f"{name} must be names with commas, got {option!r:.40}")
         if self.toward is not None and self.centre is None:
             raise InputError(
                 f"toward = '{self.toward}' needs centre, too: the mark, or the marks, in whose "

@@ -119,9 +119,9 @@ def film_of_columns(
         for body in apart or [name]:
             every = enumerate(layout.columns)
             mine = {n: one for n, (whose, one) in every if one.role and whose in ("", body)}
-            found = _body(path, body, mine, values, words, chosen, layout.along, layout.rates)
-            if found.marks:
-                film.bodies.append(found)
+            of_body = _body(path, body, mine, values, words, chosen, layout.along, layout.rates)
+            if of_body.marks:
+                film.bodies.append(of_body)
     return film
 
 
@@ -208,7 +208,7 @@ def _rows(
 
     Rows of a puck are put in the order of their frames or times: a long table has none.
     """
-    told = []
+    lines = []
     for whose in (n for n, (_, one) in enumerate(layout.columns) if one.role == "id"):
         if whose in words:
             codes, names = words[whose]
@@ -216,10 +216,10 @@ def _rows(
             numbers, codes = np.unique(values[whose], return_inverse=True, equal_nan=True)
             names = [f"{one:.15g}" for one in numbers]
         if not len(names) == codes.size > 1:  # else it numbers the rows
-            told.append((len(names), whose in words, codes, names))
-    if not told:
+            lines.append((len(names), whose in words, codes, names))
+    if not lines:
         return {"": slice(None)}
-    *_, codes, names = max(told, key=lambda one: one[:2])  # who tells most apart, best by name
+    *_, codes, names = max(lines, key=lambda one: one[:2])  # who tells most apart, best by name
     if len(names) > MOST_PUCKS:
         raise InputError(
             f"{path} has {len(names)} pucks, at most {MOST_PUCKS} are read: leave out what is none"
@@ -236,7 +236,7 @@ def _body(
     words: Mapping[int, Any], rows: Any, along: bool, rates: str,
 ) -> TrackedBody:  # fmt: skip
     """One body from its columns and rows; ``along``: places along x or y alone, the other is 0."""
-    found: dict[tuple[str, str], FloatArray] = {}
+    of_body: dict[tuple[str, str], FloatArray] = {}
     units: dict[str, str] = {}
     seen: dict[str, Flags] = {}
     for n, one in columns.items():
@@ -244,23 +244,23 @@ def _body(
             flags = _flags(path, n, one.role, values, words)[rows]
             seen[one.puck] = seen[one.puck] & flags if one.puck in seen else flags
         elif one.role != "id":
-            if (one.role, one.puck) in found:
+            if (one.role, one.puck) in of_body:
                 raise InputError(
                     f"{path} has two columns '{one.role}' of one puck: name its columns apart, or "
                     "with columns (--columns)"
                 )
-            found[one.role, one.puck] = values[n][rows]
+            of_body[one.role, one.puck] = values[n][rows]
             units[one.role] = one.unit
 
     def of(role: str) -> dict[str, FloatArray]:
-        return {mark: value for (one, mark), value in found.items() if one == role}
+        return {mark: value for (one, mark), value in of_body.items() if one == role}
 
     marks = {}
-    for role, mark in found:
+    for role, mark in of_body:
         if role not in ("x", "y"):
             continue
-        where = found[role, mark]
-        other = found.get(("y" if role == "x" else "x", mark), 0.0 * where if along else None)
+        where = of_body[role, mark]
+        other = of_body.get(("y" if role == "x" else "x", mark), 0.0 * where if along else None)
         if other is None:
             raise InputError(
                 f"{path} has a column {role} {f'of {mark} ' if mark else ''}without its "
@@ -268,13 +268,13 @@ def _body(
                 f"puck that goes along {role} alone with - for what else there is"
             )
         level = [where, other] if role == "x" else [other, where]
-        height = [found["z", mark]] if ("z", mark) in found else []
+        height = [of_body["z", mark]] if ("z", mark) in of_body else []
         marks[mark] = np.column_stack(level + height)
     if rates == ANGLES:
         marks = {mark: np.zeros((where.size, 2)) for mark, where in of("angle").items()}
     turns = {
-        mark: np.stack([found[role, mark] for role in _TURN], axis=1) for mark in marks
-        if all((role, mark) in found for role in _TURN)
+        mark: np.stack([of_body[role, mark] for role in _TURN], axis=1) for mark in marks
+        if all((role, mark) in of_body for role in _TURN)
     }  # fmt: skip
     body = TrackedBody(
         name, marks, angles=of("angle"), likelihoods=of("likelihood"), seen=seen, turns=turns

@@ -82,14 +82,14 @@ class _Scale:
     def __init__(self, path: str | Path, film: Film, how: ReaderOptions, notes: list[str]) -> None:
         if how.unit is not None and film.unit not in ("", how.unit, PIXEL):
             raise InputError(f"{path} gives places in {film.unit}: leave unit = '{how.unit}' out")
-        given = how.unit or (PIXEL if how.size is not None or how.plane is not None else "")
-        if given == PIXEL and film.unit not in ("", PIXEL):
+        length_unit = how.unit or (PIXEL if how.size is not None or how.plane is not None else "")
+        if length_unit == PIXEL and film.unit not in ("", PIXEL):
             raise InputError(f"{path} gives places in {film.unit}: leave scale and marks out")
         if how.unit not in (None, PIXEL) and film.unit == PIXEL and film.kind == "trackpy table":
             film.unit = ""  # its user may have turned pixels into something else
-        if film.unit == PIXEL and given not in ("", PIXEL):
+        if film.unit == PIXEL and length_unit not in ("", PIXEL):
             raise InputError(f"{path} gives places in pixels: give scale or marks instead of unit")
-        unit = given or film.unit
+        unit = length_unit or film.unit
         if not unit:
             raise InputError(
                 f"{path} does not say the unit of x and y: give unit (--unit cm), or for pixels "

@@ -16,7 +16,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.least_squares import FROM_BESIDE, multi_start, triangle
+from puck_tables.fitting.least_squares import FROM_NEARBY, multi_start, triangle
 from puck_tables.fitting.unknowns import NumbersOf
 
 Z95 = 1.959963984540054  # standard deviations to the ends of a 95 % interval of a normal
@@ -342,5 +342,5 @@ def profile_point(
         slow = moved.copy()
         slow[spins] *= _HARDLY
         starts.append((result.problem, slow))
-    (best, cost), *_ = multi_start(starts, FROM_BESIDE, kept=result.kept, held=k)
+    (best, cost), *_ = multi_start(starts, FROM_NEARBY, kept=result.kept, held=k)
     return 2.0 * cost, best

@@ -93,8 +93,8 @@ def spec_of(
                 f"{name} is a number of impacts, which are not looked for: ask for them "
                 "(--impacts, impacts=True)"
             )
-    for given, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
-        for name in given:
+    for numbers, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
+        for name in numbers:
             refuse_unknown(name, ALL, what)
             if name in known:
                 raise InputError(f"{name} is fixed at {known[name]:g}: leave out its {what}")

@@ -62,10 +62,10 @@ def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArr
 
 def _leaps(deviations: FloatArray, at: int) -> bool:
     """Whether residuals leap between two frames, and not those beside."""
-    ways = np.linalg.norm(np.diff(deviations[max(0, at - 3) : at + 3], axis=0), axis=1)
+    steps = np.linalg.norm(np.diff(deviations[max(0, at - 3) : at + 3], axis=0), axis=1)
     middle = at - max(0, at - 3) - 1
-    close = np.delete(ways, middle)
-    return bool(ways[middle] > max(_LEAP, _MORE * float(np.median(close))))
+    close = np.delete(steps, middle)
+    return bool(steps[middle] > max(_LEAP, _MORE * float(np.median(close))))
 
 
 FARTHEST = 4.0  # standard deviations of a frame that counts
@@ -76,7 +76,7 @@ _WIDE = 1.4  # times the usual median: up to it a scatter may be chance
 _FEW = 2.5  # residuals for each unknown
 _LEAST_DEGREES = 0.5  # residuals: of less nothing is an outlier
 _ROUNDS = 6  # of a fit, its noise and what is left out, at most
-_SETTLED = 1e-3  # of a standard deviation of the noise
+_CONVERGED = 1e-3  # of a standard deviation of the noise
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
 
 
@@ -150,7 +150,7 @@ def estimate(problem: Problem, start: FloatArray, strict: bool = False) -> Estim
         problem = problem.with_noise(noise, x, kept, jitter)
         rows = problem.residuals(x)
         again = _kept(problem, rows / _foreseen(slopes, kept), degrees, strict)
-        if change < _SETTLED and np.array_equal(again, kept):
+        if change < _CONVERGED and np.array_equal(again, kept):
             break
         kept = again
     x = problem.within(x)
@@ -253,20 +253,20 @@ def _noise(
                 angled[np.isfinite(film.angle)] = kept[turn]
             count.append(np.stack([kept[along], angled, kept[across]]))
         seen = int((kept & (problem.kinds <= ANGLE)).sum())
-        found, jitter = likeliest(
+        noise, jitter = likeliest(
             problem.noise, jitter, known, np.concatenate(problem.deviations(x), axis=1),
             np.concatenate(problem.states(x), axis=1)[RATE], np.concatenate(count, axis=1),
             max(1.0 - x.size / seen, 0.1),
         )  # fmt: skip
-        result = list(found)
+        result = list(noise)
     else:
         for kind, free in enumerate(degrees):
             if not known[kind] and free > 1.0:
                 mine = problem.kinds[kept] == kind
                 result[kind] *= math.sqrt(float(np.sum(rows[kept][mine] ** 2)) / free)
     place, angle = (
-        one if given else max(one, least)
-        for one, given, least in zip(result, known[:2], problem.least_noise(x), strict=True)
+        one if is_known else max(one, least)
+        for one, is_known, least in zip(result, known[:2], problem.least_noise(x), strict=True)
     )
     return (place, angle), jitter
 

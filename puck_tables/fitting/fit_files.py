@@ -98,16 +98,16 @@ def puck_and_launch(
     if the file is none of a fit, has no such track, its puck has drag or friction over slip speed,
     or nobody would believe what was found.
     """
-    told = f"{path}: no file of puck fit (.json)"
+    fault = f"{path}: no file of puck fit (.json)"
     try:
         data: Any = json.loads(read_whole(path, _LARGEST))
     except (ValueError, RecursionError):
-        raise InputError(told) from None
+        raise InputError(fault) from None
     kind = data.get("kind") if isinstance(data, dict) else None
     if isinstance(kind, str) and kind != KIND and kind.startswith(KIND[:-1]):
         raise InputError(f"{path} is of {kind:.40}, and this version reads {KIND}: fit again")
     if kind != KIND:
-        raise InputError(told)
+        raise InputError(fault)
     try:
         launches = {str(one["track"]): one for one in data["launches"]}
         contact = ("base",) if "base" in data["puck"] else ("radius", "pressure")
@@ -126,7 +126,7 @@ def puck_and_launch(
         unknown = tuple(str(one) for one in (*data["not_determined"], *data["doubts"]))
         astray, speeds = str(data["astray"]), [*data["slip_speeds"]]
     except (KeyError, TypeError, AttributeError):
-        raise InputError(told) from None
+        raise InputError(fault) from None
     refuse_unplayable(drags, speeds, astray, f"{path}: ")
     return puck, launch, unknown
 

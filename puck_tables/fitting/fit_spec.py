@@ -30,7 +30,7 @@ from puck_tables.fitting.parameters import (
     OF_IMPACTS,
     OF_PAIRS,
     OF_WALLS,
-    OWN_CURVE,
+    OWN_MOTION,
     POSITIVE,
     PUCK,
     SMALLEST,
@@ -43,7 +43,7 @@ from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_nam
 from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
 from puck_tables.puck import Puck
 
-_KIND = (*OWN_CURVE, "drag", *INTEGRATED)  # change the curve itself
+_KIND = (*OWN_MOTION, "drag", *INTEGRATED)  # change the curve itself
 TINY = 1e-30  # step of derivatives along the imaginary axis
 _FARTHEST = 10.0  # radii, of what is tracked from the centre: a stick on the body may be longer
 _LEAST = 1e-9  # in its unit, of what must be more than 0
@@ -168,8 +168,8 @@ class FitSpec:
     def spinning(self, spin: float) -> FitSpec:
         """What is asked with the launch spin (rad/s) held."""
         priors, bounds, start = {**self.priors}, {**self.bounds}, {**self.start}
-        for given in (priors, bounds, start):
-            given.pop("launch_spin", None)
+        for numbers in (priors, bounds, start):
+            numbers.pop("launch_spin", None)
         fixed = {**self.fixed, "launch_spin": spin}
         return replace(self, fixed=fixed, priors=priors, bounds=bounds, start=start)
 

@@ -328,8 +328,8 @@ def _trimmed_ends(
         return ""
     films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
     kept = initial_estimate(problem.with_films(films), refit=True)
-    found = kept.problem.numbers_at(kept.x)
-    numbers = ", ".join(f"{name} {value:.4g}" for name, value in found.items())
+    values = kept.problem.numbers_at(kept.x)
+    numbers = ", ".join(f"{name} {value:.4g}" for name, value in values.items())
     more = kept.problem.noise[0] * kept.size / (best.problem.noise[0] * best.size or 1.0)
     return (
         f"{' and '.join(said)} are left out: something seems to touch the puck there. With all "

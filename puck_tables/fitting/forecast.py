@@ -61,8 +61,8 @@ class Camera:
             if getattr(self, name) is not None or name in ("fps", "place_noise"):
                 number = positive(name, getattr(self, name), unit)
                 if not low <= number <= high:
-                    told = f"from {low:g} to {high:g} {unit}, got {number:g}"
-                    raise InputError(f"{name} must be {told}")
+                    fault = f"from {low:g} to {high:g} {unit}, got {number:g}"
+                    raise InputError(f"{name} must be {fault}")
                 object.__setattr__(self, name, number)
 
     def film(self, stop_time: float) -> Observations:
@@ -134,22 +134,22 @@ class Forecast(Result):
 
         That of the motion itself: other motions which look alike are not searched for.
         """
-        found = np.empty((speeds.size, spins.size))
+        errors = np.empty((speeds.size, spins.size))
         for i, speed in enumerate(speeds.tolist()):
             for k, spin in enumerate(spins.tolist()):
                 launch = (speed, 0.0), spin
                 try:
-                    _, told = _forecast_estimate(self.puck, *launch, self.camera, self.free)
-                    found[i, k] = told.errors[self.names.index(name)]
+                    _, forecast = _forecast_estimate(self.puck, *launch, self.camera, self.free)
+                    errors[i, k] = forecast.errors[self.names.index(name)]
                 except InputError:  # a film of too few frames
-                    found[i, k] = np.inf
-        return found
+                    errors[i, k] = np.inf
+        return errors
 
     def dataset(self) -> Dataset:
         """One row a number."""
-        told = {"name": list(self.names), "value": self.values, "error": self.errors}
+        variables = {"name": list(self.names), "value": self.values, "error": self.errors}
         columns = {f"number_{key}": variable(f"number_{key}", one, ("number",))
-                   for key, one in told.items()}  # fmt: skip
+                   for key, one in variables.items()}  # fmt: skip
         attributes = {
             "title": "What a film of a puck would tell", "frames": self.frames,
             "fps": self.camera.fps, "launch_velocity": list(self.velocity),
@@ -204,14 +204,14 @@ def fisher(
     spin = real("spin", getattr(launch, "spin", None), "rad/s")  # type: ignore[arg-type]
     seen, known = _forecast_estimate(puck, velocity, spin, camera, free)
     problem, errors = seen.problem, known.errors
-    rivals = () if camera.angle_noise is not None else other_minima(seen, known)
+    alternatives = () if camera.angle_noise is not None else other_minima(seen, known)
     unsigned = mirrored(seen, known)
     names = tuple(name for _, name in problem.names)
-    for minimum in rivals:
+    for minimum in alternatives:
         errors[[k for k, name in enumerate(names) if name in minimum.numbers]] = np.inf
     if unsigned:
         errors[names.index("launch_spin")] = np.inf
-    said = [minimum_sentence(minimum, False) for minimum in rivals]
+    said = [minimum_sentence(minimum, False) for minimum in alternatives]
     said += [mirror_sentence("the film") for _ in unsigned]
     return Forecast(
         puck, velocity, spin, camera, problem.spec.free, names, seen.x, errors,
@@ -238,8 +238,8 @@ def _forecast_estimate(
     noise = camera.place_noise, camera.angle_noise or 1.0
     problem = Problem(spec, (film,), noise, tall=spec.puck.delta > 1.0)
     numbers = {**spec.known(), "decel": puck.decel, "delta": spec.puck.delta}
-    found = {name: numbers[name] for name in spec.free}
-    x = problem.unknowns(found, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
+    values = {name: numbers[name] for name in spec.free}
+    x = problem.unknowns(values, np.array([[0.0, 0.0, *velocity, spin, 0.0]]))
     rows, slopes = problem.residuals_and_jacobian(x)
     certainty = certainty_of(slopes, problem.plausible(x))
     places = rows[: 2 * film.time.size].reshape(2, -1).T * camera.place_noise  # all were seen at 0

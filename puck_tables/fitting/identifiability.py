@@ -136,8 +136,8 @@ def ran_away(problem: Problem, x: FloatArray) -> str:
 
 
 _MEMBER = 0.2  # component of a direction that is named
-_TOLD_ALL = 2  # other motions that are told in full
-_TOLD = 0.1  # of what is plausible: an error that says something
+_IN_FULL = 2  # other motions that are told in full
+_INFORMATIVE = 0.1  # of what is plausible: an error that says something
 _BETTER = 0.2  # times the error of the film that there is
 _SPINNING = 1.0  # rω/v of a launch with more spin
 _FASTEST = 1e3  # m/s, of a rim: more spin than that is no advice
@@ -157,8 +157,8 @@ def not_identifiable(
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     marked = result.problem.angled
-    sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_TOLD_ALL]]
-    if others := len(minima[_TOLD_ALL:]):
+    sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_IN_FULL]]
+    if others := len(minima[_IN_FULL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
         sentences.append(f"{others} more {more} about as well.")
     if marked and any(minimum.rise < -(Z95**2) for minimum in minima):
@@ -180,18 +180,18 @@ def not_identifiable(
         names = [_name(result.problem, k) for k in members]
         shared = [result.problem.names[k][1] for k in members if result.problem.names[k][0] == -1]
         if len(names) == 1:
-            told = f"{names[0]} is not determined: {_ALIKE}"
+            sentence = f"{names[0]} is not determined: {_ALIKE}"
         else:
             sizes = np.abs(certainty.blind[:, members[:2]]).sum(axis=1)
             along = certainty.blind[int(np.argmax(sizes))][members]
             words = [f"{name} {'rises' if one * along[0] > 0.0 else 'falls'}"
                      for name, one in zip(names, along, strict=True)]  # fmt: skip
-            told = (
+            sentence = (
                 f"{' and '.join(names)} are not determined one by one: the tracks look alike when "
                 f"{' and '.join(words)} with it"
             )
         remedy = _remedy(result, shared, [result.problem.names[k] for k in members])
-        sentences.append(f"{told}. {remedy}")
+        sentences.append(f"{sentence}. {remedy}")
         seen.add(frozenset(members))
     return tuple(sentences)
 
@@ -241,13 +241,15 @@ def _remedy(result: Estimate, shared: list[str], members: list[tuple[int, str]])
         places = [problem.names.index(key) for key in wanted]
         return np.asarray((known.errors / known.plausible)[places])
 
-    now, told = errors(result.problem, result.x), list[str]()
+    now, remedies = errors(result.problem, result.x), list[str]()
     for words, problem, x in _other_films(result):
         others = errors(problem, x)
-        enough = (others < _TOLD) & (others < _BETTER * now)
-        if enough.all() and not any(one in words for one in told):
-            told.append(words)
-    return f"What would tell: {', or '.join(told)}." if told else "Fix it, or give it a prior."
+        enough = (others < _INFORMATIVE) & (others < _BETTER * now)
+        if enough.all() and not any(one in words for one in remedies):
+            remedies.append(words)
+    return (
+        f"What would tell: {', or '.join(remedies)}." if remedies else "Fix it, or give it a prior."
+    )
 
 
 def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
@@ -266,8 +268,8 @@ def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:
     spin = np.maximum(np.abs(faster[:, 4]), _SPINNING * speed / radius)
     faster[:, 4] = np.copysign(spin, faster[:, 4])
     least = float(spin.max())
-    asks = not np.allclose(faster, launches) and "launch_spin" not in problem.spec.fixed
-    if asks and least * radius < _FASTEST:
+    varies = not np.allclose(faster, launches) and "launch_spin" not in problem.spec.fixed
+    if varies and least * radius < _FASTEST:
         moderate = dict(values)
         if "delta" in values:  # at a bound it says nothing of what could be seen
             moderate["delta"] = min(max(values["delta"], 0.05), 0.9)
@@ -296,9 +298,9 @@ def spin_would_tell(result: Estimate) -> str:
     films = _other_films(replace(result, problem=problem))
     for words, other, x in (one for one in films if "spin" in one[0] and "marks" in one[0]):
         errors = zip(other.spec.free, _by_tracks(other, x).errors, strict=False)
-        told = [f"{name} to +- {error:.2g}" for name, error in errors if 0.0 < error < math.inf]
-        if told:
-            return f"With {words}, as it is otherwise, the film would tell {' and '.join(told)}"
+        gains = [f"{name} to +- {error:.2g}" for name, error in errors if 0.0 < error < math.inf]
+        if gains:
+            return f"With {words}, as it is otherwise, the film would tell {' and '.join(gains)}"
     return ""
 
 

@@ -197,13 +197,13 @@ def coupled(
     starts_new = [n for n in range(len(pieces)) if n not in follows]
     chains = [[*range(*ends)] for ends in pairwise([*starts_new, len(pieces)])]
     tracks, home = [], {}
-    for k, chain in enumerate(chains):
-        first, last = problem.films[chain[0]], problem.films[chain[-1]]
-        whole = films[pieces[chain[0]].track]
+    for k, slides in enumerate(chains):
+        first, last = problem.films[slides[0]], problem.films[slides[-1]]
+        whole = films[pieces[slides[0]].track]
         inside = (whole.frame >= first.frame[0]) & (whole.frame <= last.frame[-1])
-        name = whole.name if len(chain) > 1 else first.name
+        name = whole.name if len(slides) > 1 else first.name
         tracks.append(replace(whole.part(inside), name=name))
-        home.update(dict.fromkeys(chain, k))
+        home.update(dict.fromkeys(slides, k))
     walls: list[WallLine | None] = []
     starts: list[WallLine] = []
     impact_specs = []
@@ -217,8 +217,8 @@ def coupled(
         ends = [problem.films[n + more].time[-1] for n in own for more in (0, 1)]
         number = -1
         if len(own) == 1:
-            given, wall = _wall_at(lines, kink, radius) or (-1 - len(walls), None)
-            number = numbers.setdefault(given, len(walls))
+            known, wall = _wall_at(lines, kink, radius) or (-1 - len(walls), None)
+            number = numbers.setdefault(known, len(walls))
             if number == len(walls):
                 normal = np.array([math.cos(match_.toward), math.sin(match_.toward)])
                 away = float(kink.before[:2] @ normal) + radius
@@ -229,13 +229,15 @@ def coupled(
         impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
     sizes = {len(match_.kinks_of_slides) for match_ in matches}
     grip = all(abs(1.0 + match_.tangential) > _GRIPS for match_ in matches)
-    ways = [spec.coupled(sizes, grip)]
+    candidates = [spec.coupled(sizes, grip)]
     if grip and len(matches) > 1:
-        ways += [other for other in [spec.coupled(sizes, False)] if other.free != ways[0].free]
-    firsts = [chain[0] for chain in chains]
+        candidates += [
+            other for other in [spec.coupled(sizes, False)] if other.free != candidates[0].free
+        ]
+    firsts = [slides[0] for slides in chains]
     launches, result = problem.launches(x)[firsts], []
-    for one in ways:
-        tied = Problem(
+    for one in candidates:
+        both = Problem(
             one, tuple(tracks), problem.noise, problem.tall,
             rests=tuple(problem.rests[n] for n in firsts) if problem.rests else (),
             walls=tuple(walls), impact_specs=tuple(impact_specs), known=problem.known,
@@ -245,8 +247,8 @@ def coupled(
         for name in one.free:
             low, high = one.limits(name)
             values[name] = min(max(values[name], low), high)
-        start = tied.unknowns(values, launches, tuple(starts))
-        result.append(CoupledFit(tied, start, tuple(home[n] for n in range(len(pieces)))))
+        start = both.unknowns(values, launches, tuple(starts))
+        result.append(CoupledFit(both, start, tuple(home[n] for n in range(len(pieces)))))
     return result
 
 

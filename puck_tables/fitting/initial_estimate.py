@@ -52,7 +52,7 @@ _PARTS = np.outer(
     np.sqrt((np.arange(6) + 0.5) / 6.0), np.exp(1j * np.pi * ((np.arange(16) + 0.5) / 16.0 - 0.5))
 ).ravel()  # fmt: skip
 _LAW_SPEEDS = tuple(np.geomspace(0.02, 0.9, 12).tolist())  # of the fastest slip
-_BELT_SPEEDS, _BELT_WAYS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
+_BELT_SPEEDS, _BELT_DIRECTIONS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
 
 
 class _Moments(NamedTuple):
@@ -135,10 +135,10 @@ def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:
     if "law_speed" in spec.free:
         yield from ({"law_speed": share * fastest} for share in _LAW_SPEEDS)
     elif {"belt_x", "belt_y"} & {*spec.free}:
-        way = 2.0 * np.pi * np.arange(_BELT_WAYS) / _BELT_WAYS
+        angles = 2.0 * np.pi * np.arange(_BELT_DIRECTIONS) / _BELT_DIRECTIONS
         ends = [one.speed[:2, -1] for one in films]
         tried = [share * fastest * np.array([np.cos(a), np.sin(a)])
-                 for share in _BELT_SPEEDS for a in way]  # fmt: skip
+                 for share in _BELT_SPEEDS for a in angles]  # fmt: skip
         for belt in (*ends, *tried):
             yield {"belt_x": float(belt[0]), "belt_y": float(belt[1])}
     else:
@@ -173,18 +173,18 @@ def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: f
             for line, one in zip(lines, rows, strict=True)
         ]) for rows in ([column[..., at] for column in columns], rest)
     )  # fmt: skip
-    found, left = np.zeros(len(at)), float(seen @ seen)
+    solution, left = np.zeros(len(at)), float(seen @ seen)
     if names:
         size = np.maximum(np.linalg.norm(every, axis=0), 1e-300)
         low, high = np.array([spec.limits(name) for name in names]).T
         low = np.maximum(low, [least if name in _FRICTIONS else -np.inf for name in names])
         result = lsq_linear(every / size, seen, (low * size, high * size), method="bvls")
-        found, left = result.x / size, 2.0 * float(result.cost)
+        solution, left = result.x / size, 2.0 * float(result.cost)
     radius, launches = spec.known()["radius"], []
     for film, column, one in zip(films, columns, rest, strict=True):
-        begun, speed = np.linalg.lstsq(film.line, one - column[..., at] @ found, rcond=None)[0]
+        begun, speed = np.linalg.lstsq(film.line, one - column[..., at] @ solution, rcond=None)[0]
         launches.append([*begun[:2], *speed[:2], speed[2] / radius, begun[2] / radius])
-    numbers = dict(zip(names, found.tolist(), strict=True))
+    numbers = dict(zip(names, solution.tolist(), strict=True))
     return _LinearFit({**trial, **numbers}, np.array(launches), left)
 
 
@@ -222,9 +222,9 @@ def _columns(film: _Moments, law: str, known: NumbersOf) -> FloatArray:
     )
     whole = np.stack([v / slip * a, rim / slip * d])
     part = np.zeros_like(whole) if law == "" else _of_law(v, rim, law, known["law_speed"])
-    ways = np.stack([*(velocity / np.maximum(v, 1e-300)), np.sign(turning)])
-    ways[2] /= known["gyration"] ** 2
-    braking, resting = (-g * one[[0, 0, 1]] * ways for one in (whole - part, part))
+    directions = np.stack([*(velocity / np.maximum(v, 1e-300)), np.sign(turning)])
+    directions[2] /= known["gyration"] ** 2
+    braking, resting = (-g * one[[0, 0, 1]] * directions for one in (whole - part, part))
     none = np.zeros(v.size)
     rates = np.stack([
         braking, resting,

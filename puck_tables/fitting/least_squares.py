@@ -71,7 +71,7 @@ _PART = 128  # rows, at the least
 ROBUST = 3.0  # residuals that are larger count less
 # steps, and how many starts then go on
 FROM_AFAR = ((1, 10), (4, 5), (12, 4))
-FROM_BESIDE = ((4, 2), (30, 1))
+FROM_NEARBY = ((4, 2), (30, 1))
 FROM_SLOWING = ((3, 3), (8, 2), (30, 1))
 _DAMPED, _EASED, _HARDER = 1e-3, 0.1, 10.0
 _LEAST = 1e-9  # damping: what is not seen stays where it is
@@ -128,10 +128,11 @@ def minimise(
         if not walker.arrived:
             walker.step()
     if not (math.isfinite(walker.cost) and np.isfinite(walker.slopes).all()):
-        told = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(walker.x).items())
+        words = ", ".join(f"{n} {value:.3g}" for n, value in problem.numbers_at(walker.x).items())
         raise InputError(
             "the fit is led astray, to a motion that cannot be computed"
-            f"{f' ({told})' if told else ''}: give bounds or a prior of what it finds, or find less"
+            f"{f' ({words})' if words else ''}: give bounds or a prior of what it finds,"
+            " or find less"
         )
     return walker.x, walker.cost
 

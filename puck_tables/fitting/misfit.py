@@ -98,14 +98,14 @@ def _left(problem: Problem, x: FloatArray) -> _Left:
 class _Reading(NamedTuple):
     """What else may be: in words, by how much smaller residuals are, if a floor.
 
-    ``bends``: if one that bends any path, as a slope does: it comes first only if about the best,
-    and not before angles read otherwise; ``same``: if it takes no more numbers, as these.
+    ``turns_paths``: if one that bends any path, as a slope does: it comes first only if about the
+    best, and not before angles read otherwise; ``same``: if it takes no more numbers, as these.
     """
 
     words: str
     gain: float
     floor: bool = False
-    bends: bool = False
+    turns_paths: bool = False
     same: bool = False
 
 
@@ -125,7 +125,7 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
                 f"Places of {film.name} lie on one line, from which spin and height turn a puck: "
                 "are both x and y in the file?"
             )
-    told: list[_Reading] = []
+    explanations: list[_Reading] = []
     if problem.spec.base is None and _may_change(problem.spec) and not speeds:
         drag, air, slope = (
             _reading(partial(_by_floor, result, problem, one)) for one in ("drag", "air", "slope")
@@ -133,19 +133,19 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         law = _reading(partial(_by_speed, result, problem))
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = law._replace(gain=min(law.gain, drag.gain))
-        told = [one for one in (drag, law, air, slope) if one]
-    told += filter(None, [_reading(partial(_by_mark, result, problem))])
-    told += _otherwise(result, problem)
-    best = max((one.gain for one in told), default=0.0)
+        explanations = [one for one in (drag, law, air, slope) if one]
+    explanations += filter(None, [_reading(partial(_by_mark, result, problem))])
+    explanations += _otherwise(result, problem)
+    best = max((one.gain for one in explanations), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [
-        one for one in told
+        one for one in explanations
         if one.gain > best - _ALIKE or (one.floor and one.gain > max(_MUCH, best - _MUCH))
     ]  # fmt: skip
     least = max([best - _BETTER, *(one.gain + _BETTER for one in near if one.same)])
     near.sort(
         key=lambda one: (
-            not one.floor or (one.bends and one.gain < least), -one.gain - _BETTER * one.same
+            not one.floor or (one.turns_paths and one.gain < least), -one.gain - _BETTER * one.same
         )
     )  # fmt: skip
     if near:
@@ -171,7 +171,7 @@ def _reading(of: Callable[[], _Reading]) -> _Reading | None:
 def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     """The angles, or the radius, read otherwise, if one of these fits far better."""
     best, spec = _Reading("", 0.0), problem.spec
-    given, others = spec.known()["radius"], []
+    known, others = spec.known()["radius"], []
     held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
     angles = _ANGLES if spec.base is None else (*_ANGLES, _ACROSS)
     for words, scale, read in angles if problem.angled and not held else ():
@@ -191,7 +191,7 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
         left = _left(one.problem, one.x)
         gain = _gain(result, left, problem.noise[0], scale)
         radius = one.problem.spec.scales(one.problem.numbers_at(one.x))[2]
-        same = abs(radius / given - 1.0) < _NEAR or radius < _LEAST * given
+        same = abs(radius / known - 1.0) < _NEAR or radius < _LEAST * known
         same = same and wider and "radius" in other.spec.free
         if gain > best.gain and not same and left.near(problem.noise[0]):
             best = _Reading(words.format(radius), gain, same=other.spec == spec)
@@ -219,9 +219,9 @@ def _with_angles(
 
 def _unwrapped(angle: FloatArray, period: float) -> FloatArray:
     """Angles, rad, as they go on where steps of more than half a period are taken for wraps."""
-    seen, found = np.isfinite(angle), angle.copy()
-    found[seen] = np.unwrap(angle[seen], period=period)
-    return found
+    seen, unwrapped = np.isfinite(angle), angle.copy()
+    unwrapped[seen] = np.unwrap(angle[seen], period=period)
+    return unwrapped
 
 
 def _by_mark(result: Estimate, problem: Problem) -> _Reading:
@@ -261,24 +261,24 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
     plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
     x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
     gain = _gain(result, _left(other, x), problem.noise[0])
-    found, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
+    numbers, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
     tilt = 0.0
     slowing, free = result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
     if floor == "drag":
-        force = abs(found["drag"]) * speed
+        force = abs(numbers["drag"]) * speed
         words = f"with drag besides friction: find it, too {free}"
     elif floor == "air":
-        force = found["air"] * speed**2
+        force = numbers["air"] * speed**2
         words = (
-            f"if air slowed it, by {found['air']:.2g}/m times the square of its speed (what slows "
-            f"it hardly brakes its spin, as air does): find it, too {free}"
+            f"if air slowed it, by {numbers['air']:.2g}/m times the square of its speed (what "
+            f"slows it hardly brakes its spin, as air does): find it, too {free}"
         )
     else:
-        pull = found["slope_x"], found["slope_y"]
-        tilt, way = math.degrees(math.hypot(*pull)), math.degrees(math.atan2(pull[1], pull[0]))
+        pull = numbers["slope_x"], numbers["slope_y"]
+        tilt, heading = math.degrees(math.hypot(*pull)), math.degrees(math.atan2(pull[1], pull[0]))
         force = math.hypot(*pull) * spec.known()["gravity"] if tilt < _STEEPEST else 0.0
         words = (
-            f"with a table out of level by {tilt:.2g} degrees, down along {way % 360.0:.3g} "
+            f"with a table out of level by {tilt:.2g} degrees, down along {heading % 360.0:.3g} "
             "degrees from x: level it, or find its slope, too (slope_x, slope_y)"
         )
     gain = gain if force > _FAINT * slowing else 0.0
@@ -299,9 +299,9 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     gain = _gain(result, _left(other.problem, other.x), problem.noise[0])
     speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
     values = [numbers[name] for name in NODES[: len(speeds)]]
-    told = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
+    points = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
     words = (
-        f"with a friction over slip speed ({told}): find it (--slip-speeds "
+        f"with a friction over slip speed ({points}): find it (--slip-speeds "
         f"{','.join(f'{u:g}' for u in speeds)})"
     )
     return _Reading(words, gain, True)

@@ -40,7 +40,7 @@ _FRAMES = 80  # that tell whether such a law may be the reason of a misfit
 _LEAST = 0.02  # of the largest friction of a line: the smallest
 _FAINTEST, _STRONGEST = 0.02, 10.0  # times one friction for all speeds: laws that some floor has
 _SHARES = (0.0, 0.08, 0.3, 1.0)  # of the fastest slip
-_ALL_GIVEN = Known(True, True, True)
+_ALL_KNOWN = Known(True, True, True)
 
 
 def over_speeds(result: Estimate, speeds: tuple[float, ...], between: str) -> Estimate:
@@ -80,7 +80,7 @@ def tried(result: Estimate) -> Estimate:
     fewer = problem.with_films(tuple(film.thinned(_FRAMES) for film in problem.films))
     usual = problem.numbers_at(result.x)["friction"]
     bounds = {"friction": (_FAINTEST * usual, _STRONGEST * usual), **problem.spec.bounds}
-    fewer = replace(fewer, known=_ALL_GIVEN, level=ROUGH, spec=replace(problem.spec, bounds=bounds))
+    fewer = replace(fewer, known=_ALL_KNOWN, level=ROUGH, spec=replace(problem.spec, bounds=bounds))
     return over_speeds(replace(result, problem=fewer), speeds, "cubic")
 
 
@@ -177,7 +177,7 @@ def compare(problem: Problem, variants: Mapping[str, FitSpec]) -> tuple[LawScore
     for k, (name, before) in enumerate(fits.items()):
         if near[k] and not (known.place and known.angle):
             same = before.problem.with_noise((place, angle), before.x)
-            one = estimate(replace(same, known=_ALL_GIVEN), before.x)
+            one = estimate(replace(same, known=_ALL_KNOWN), before.x)
             if (less := chi2_under(one, (place, angle))) < chi2[k]:
                 fits[name], chi2[k] = one, less
     score = chi2 + 2.0 * unknowns

@@ -82,23 +82,23 @@ _FEW_WINDOWS, _ALIKE_TURNS, _FOLLOWED = 3, 0.5, 1.5  # of turns: mean of e^(iθ)
 
 
 class Straight(NamedTuple):
-    """The line through ``point`` (x, y) m along ``way`` (cos, sin), the only places of a track.
+    """The line through ``point`` (x, y) m along ``direction`` (cos, sin), all places of a track.
 
     What lies across it was not measured: it has no noise, and tells nothing.
     """
 
     point: tuple[float, float]
-    way: tuple[float, float]
+    direction: tuple[float, float]
 
     @property
     def main(self) -> int:
         """0 where x tells the place, 1 where y does."""
-        return int(abs(self.way[1]) > abs(self.way[0]))
+        return int(abs(self.direction[1]) > abs(self.direction[0]))
 
     @property
     def slope(self) -> float:
         """By how much the other coordinate changes with the main one."""
-        return self.way[1 - self.main] / self.way[self.main]
+        return self.direction[1 - self.main] / self.direction[self.main]
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +209,7 @@ def _straight(place: FloatArray) -> Straight | None:
     Noise of two coordinates would spread far more across.
 
     >>> x = np.arange(20.0) + 0.1 * np.random.default_rng(1).normal(size=20)
-    >>> _straight(np.stack([0.3 * x, 0.4 * x], axis=1)).way
+    >>> _straight(np.stack([0.3 * x, 0.4 * x], axis=1)).direction
     (0.6, 0.8)
     """
     size = np.ptp(place, axis=0)
@@ -217,15 +217,15 @@ def _straight(place: FloatArray) -> Straight | None:
         return None
     point = np.median(place, axis=0)
     if size.all():
-        way = np.linalg.svd(place - place.mean(axis=0), full_matrices=False)[2][0]
-        way *= np.copysign(1.0, way[np.abs(way).argmax()])
+        direction = np.linalg.svd(place - place.mean(axis=0), full_matrices=False)[2][0]
+        direction *= np.copysign(1.0, direction[np.abs(direction).argmax()])
         deviations = place - point
-        noise = _spread([np.diff(deviations @ way, 3)])
-        if not np.ptp(deviations @ [-way[1], way[0]]) <= noise:
+        noise = _spread([np.diff(deviations @ direction, 3)])
+        if not np.ptp(deviations @ [-direction[1], direction[0]]) <= noise:
             return None
     else:
-        way = (size > 0.0).astype(np.float64)
-    x, y, cosine, sine = np.round([*point, *way], 15).tolist()
+        direction = (size > 0.0).astype(np.float64)
+    x, y, cosine, sine = np.round([*point, *direction], 15).tolist()
     return Straight((x, y), (cosine, sine))
 
 
@@ -245,8 +245,8 @@ def noise_of(films: list[Observations]) -> tuple[float, float]:
         step = np.diff(film.time)
         even = np.abs(step / np.median(step) - 1.0) < _ALIKE
         runs = even[2:] & even[1:-1] & even[:-2]
-        way = np.eye(2) if film.straight is None else np.array([film.straight.way]).T
-        places.append(np.diff(film.place @ way, 3, axis=0)[runs])
+        axes = np.eye(2) if film.straight is None else np.array([film.straight.direction]).T
+        places.append(np.diff(film.place @ axes, 3, axis=0)[runs])
         if film.angle is not None:
             third = np.diff(film.angle, 3)[runs]
             angles.append(wrapped(third[np.isfinite(third)]))

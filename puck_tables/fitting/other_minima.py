@@ -173,11 +173,11 @@ def _of_other_turns(result: Estimate) -> list[FloatArray]:
     starts = []
     marked = [(k, n) for k, (n, name) in enumerate(problem.names)
               if name == _SPIN and problem.films[n].angle is not None]  # fmt: skip
-    for (k, n), way in product(marked, (-2.0, 2.0)):
+    for (k, n), turns in product(marked, (-2.0, 2.0)):
         x = result.x
         for _ in range(_MORE_TURNS):  # as long as they are near
             x = x.copy()
-            x[k] += way * half_turns(problem.films[n])
+            x[k] += turns * half_turns(problem.films[n])
             within = problem.limits[0][k] <= x[k] <= problem.limits[1][k]
             if not (within and _near(result, x, [])):
                 break
@@ -199,12 +199,12 @@ def _of_other_spins(result: Estimate) -> list[FloatArray]:
     speed = np.hypot(launches[:, 2], launches[:, 3])
     limit = _LIMIT * speed / radius
     starts = []
-    ways = (
+    candidates = (
         (np.zeros(limit.size), _TILT), (np.copysign(limit, launches[:, 4]), delta),
         (-np.copysign(limit, launches[:, 4]), 0.0), (-launches[:, 4], delta),
     )  # fmt: skip
     slip = np.hypot(speed, radius * launches[:, 4]).sum()
-    for spins, tilt in ways:
+    for spins, tilt in candidates:
         other = launches.copy()
         other[:, 4] = spins
         # what slows the puck is about J times the share of its speed in the slip
@@ -288,15 +288,15 @@ def without_spin(
     noise = result.problem.noise
     if chi2_under(still, noise) > chi2_under(result, noise) + RISE:
         return (), ()
-    told = numbers_of(still, certainty_at(still, freedom(still)))[0]
-    number = told[scale]
+    values = numbers_of(still, certainty_at(still, freedom(still)))[0]
+    number = values[scale]
     if not number.determined:
         return (), ()
     return (
         f"{scale} = {number.value:.4g} +- {number.error:.2g}{number.unit_behind} if it did not "
         "spin: --fix "
         "launch_spin=0 (fixed={'launch_spin': 0}).",
-    ), tuple(name for name, one in told.items() if not one.determined)
+    ), tuple(name for name, one in values.items() if not one.determined)
 
 
 _JUDGED = 2.5  # degrees of freedom that tell the noise of a kind

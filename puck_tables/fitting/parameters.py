@@ -88,7 +88,7 @@ MOST = {
 TALLEST, LARGEST, SMALLEST = 100.0, 1e6, 1e-6  # times the radius; m
 # 0 is none of their values
 POSITIVE = ("radius", "gravity", "friction", "decel", "mass_ratio", "friction_rest", "law_speed")
-OWN_CURVE = ("gyration", "inner")  # at each value of these unit motions are another curve
+OWN_MOTION = ("gyration", "inner")  # at each value of these unit motions are another curve
 MARK = ("mark_x", "mark_y")
 DRAGS, LAW_NUMBERS = ("air", "spin_drag"), ("friction_rest", "law_speed")
 # of which no look-up has the motions

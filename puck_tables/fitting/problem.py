@@ -42,7 +42,7 @@ class Known(NamedTuple):
     jitter: bool = False
 
 
-_NONE_GIVEN = Known()
+_NONE_KNOWN = Known()
 EXACT = 1e-12  # of a cost: what a step still gains where a minimum is found
 ROUGH = 1e-4  # of it, where only the size of residuals is asked
 
@@ -66,12 +66,12 @@ def weights_of(
     sine = np.where(still, 0.0, vy / np.where(still, 1.0, speed))
     along = noise[0] ** 2 + (jitter * speed) ** 2
     turn = noise[1] ** 2 + (jitter * spin) ** 2
-    told = np.where(placed, jitter**2 * speed * spin / along, 0.0)
-    left = np.sqrt(turn - told**2 * along)
+    variance = np.where(placed, jitter**2 * speed * spin / along, 0.0)
+    left = np.sqrt(turn - variance**2 * along)
     out = np.zeros((speed.size, 3, 3))
     out[:, 0, 0], out[:, 0, 1] = cosine / np.sqrt(along), sine / np.sqrt(along)
     out[:, 1, 0], out[:, 1, 1] = -sine / noise[0], cosine / noise[0]
-    out[:, 2, 0], out[:, 2, 1] = -told * cosine / left, -told * sine / left
+    out[:, 2, 0], out[:, 2, 1] = -variance * cosine / left, -variance * sine / left
     out[:, 2, 2] = 1.0 / left
     return out
 
@@ -156,7 +156,7 @@ class Problem(Slides):
     impact_specs: tuple[ImpactSpec, ...] = ()
     jitter: float = 0.0
     weights: tuple[FloatArray, ...] = ()
-    known: Known = _NONE_GIVEN
+    known: Known = _NONE_KNOWN
     smooth: tuple[float, float] = (math.nan, math.nan)
     level: float = EXACT
 
@@ -218,7 +218,7 @@ class Problem(Slides):
             )
         straight = self.films[n].straight
         if straight is not None and not self.weights:  # which lie along the motion
-            rows[X] = straight.way[0] * rows[X] + straight.way[1] * rows[Y]
+            rows[X] = straight.direction[0] * rows[X] + straight.direction[1] * rows[Y]
         if straight is not None or self.films[n].counts is not None:
             counts = counting_of(self.films[n])
             rows *= counts.reshape(3, -1, *[1] * (deviations.ndim - 2))

@@ -48,16 +48,18 @@ class Remarked:
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        found = [*misfits(self.estimate, self.forces.chance)]
-        if found:
-            found.append(
+        sentences = [*misfits(self.estimate, self.forces.chance)]
+        if sentences:
+            sentences.append(
                 "Standard errors are widened by what parts of the frames do to the numbers: they "
                 "may still be too small"
             )
-        found += filter(None, (self.untied, self.misfit))
+        sentences += filter(None, (self.untied, self.misfit))
         if self.outliers > 0.2:
-            found.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
-        return tuple(found)
+            sentences.append(
+                f"{100.0 * self.outliers:.3g} % of the observations had to be left out"
+            )
+        return tuple(sentences)
 
     @property
     def doubts(self) -> list[str]:
@@ -87,8 +89,8 @@ class Remarked:
         own = len(problem.spec.free) or self.estimate.x.size  # of the puck, if any is found
         # of several at their most rounding does not choose
         wider = [round(self.certainty.ratio(k), 6) for k in range(own)]
-        told = bool(self.complaints) or computed(self.estimate)
-        if self.certainty.widened and max(wider) > _WIDER and not told:
+        is_said = bool(self.complaints) or computed(self.estimate)
+        if self.certainty.widened and max(wider) > _WIDER and not is_said:
             name = problem.names[int(np.argmax(wider))][1]
             said.append(
                 "What is left may be no noise, though that is hardly seen: standard errors are "
@@ -97,16 +99,16 @@ class Remarked:
             )
         for k, side in enumerate(self.certainty.pinned):
             if side:
-                end, way = problem.limits[side > 0][k], "above" if side > 0 else "below"
+                end, where = problem.limits[side > 0][k], "above" if side > 0 else "below"
                 name = problem.names[k][1]
                 if side > 0 and name == "friction" and end == problem.spec.steepest(name):
-                    way += " (with more part of the base would lift: is the height right?)"
+                    where += " (with more part of the base would lift: is the height right?)"
                 if side < 0 and name == "delta" and problem.angled:  # a path turns with the spin
-                    way += " (or angles, or y, grow the other way)"
+                    where += " (or angles, or y, grow the other way)"
                 said.append(
-                    f"{name} lies on the end of its range, {end:.6g}: what fits "
-                    f"best may be {way}. So it has no standard error, and its interval, and errors "
-                    "and intervals of the rest, may mislead"
+                    f"{name} lies on the end of its range, {end:.6g}: what fits best may be "
+                    f"{where}. So it has no standard error, and its interval, and errors and "
+                    "intervals of the rest, may mislead"
                 )
         air, mass = self.numbers.get("air"), self.given.mass
         if air is not None and mass != 1.0 and math.isfinite(air.error):

@@ -86,21 +86,21 @@ def misfits(result: Estimate, explained: float) -> tuple[str, ...]:
 
     ``explained``: the probability by chance of what a slope, drag or air would explain.
     """
-    told = []
+    sentences = []
     seen = not computed(result)
     excess = excess_of(result, _SELDOM)
-    given = any(result.problem.known[:2])
-    if seen and not given and excess > NOISY:
-        told.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
-    if given and result.size**2 > 1.0 + 5.0 * math.sqrt(2.0 / max(result.degrees, 1)):
-        told.append(f"The residuals are {result.size:.3g} times the noise given")
+    is_known = any(result.problem.known[:2])
+    if seen and not is_known and excess > NOISY:
+        sentences.append(f"The residuals are {excess:.3g} times what smooth tracks would leave")
+    if is_known and result.size**2 > 1.0 + 5.0 * math.sqrt(2.0 / max(result.degrees, 1)):
+        sentences.append(f"The residuals are {result.size:.3g} times the noise given")
     by_chance = min(runs(result), drift(result), explained)
     if seen and by_chance < NO_PATTERN and not hidden(result):
-        told.append(
+        sentences.append(
             "The residuals are no noise, they have a pattern (probability by chance "
             f"{by_chance:.1g})"
         )
-    return tuple(told)
+    return tuple(sentences)
 
 
 def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> bool:
@@ -192,7 +192,10 @@ OUT_OF_LEVEL = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
-_RANK, _SEEN = 1e-9, 2e-3  # of the largest slope; of what a force does: less is computed inexactly
+_RANK, _VISIBLE = (
+    1e-9,
+    2e-3,
+)  # of the largest slope; of what a force does: less is computed inexactly
 
 
 class SideForces(NamedTuple):
@@ -226,29 +229,29 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     changes = shifted_by(result, certainty, columns)
     slopes = result.jacobian * kept
     slopes = slopes / np.maximum(np.linalg.norm(slopes, axis=0), 1e-300)
-    ways, sizes, _ = np.linalg.svd(slopes[:, np.equal(certainty.pinned, 0)], full_matrices=False)
-    ways = ways[:, sizes > _RANK * sizes.max(initial=0.0)]
+    basis, sizes, _ = np.linalg.svd(slopes[:, np.equal(certainty.pinned, 0)], full_matrices=False)
+    basis = basis[:, sizes > _RANK * sizes.max(initial=0.0)]
     left = result.residuals * result.kept
-    left = left - ways @ (ways.T @ left)
+    left = left - basis @ (basis.T @ left)
     lengths = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
-    columns = (columns - ways @ (ways.T @ columns)) / lengths
+    columns = (columns - basis @ (basis.T @ columns)) / lengths
     if not left.any() or result.degrees <= _FORCES:
         return SideForces()
-    told = {kind: _explained(columns[:, kind], left, result.degrees) for kind in _KINDS}
-    forces = {kind: one.force / lengths[list(kind)] for kind, one in told.items()}
+    shares = {kind: _explained(columns[:, kind], left, result.degrees) for kind in _KINDS}
+    forces = {kind: one.force / lengths[list(kind)] for kind, one in shares.items()}
     decel = problem.spec.scales(values)[0]
     gravity = {**problem.spec.known(), **values}["gravity"]
     tilt = math.degrees(math.hypot(*forces[SLOPE]) / gravity)
-    best = max(one.gain for one in told.values())
-    near = [kind for kind, one in told.items() if one.gain > best - _ALIKE]
+    best = max(one.gain for one in shares.values())
+    near = [kind for kind, one in shares.items() if one.gain > best - _ALIKE]
     if tilt > _STEEP and len(near) > 1:
         near = [kind for kind in near if kind != SLOPE]
     slope = np.hypot(*changes[:, SLOPE].T) * gravity * math.radians(OUT_OF_LEVEL)
     fastest = problem.fastest(result.x)
     return SideForces(
-        min(len(_KINDS) * min(one.chance for one in told.values()), 1.0),
+        min(len(_KINDS) * min(one.chance for one in shares.values()), 1.0),
         " or ".join(_KINDS[kind].format(tilt) for kind in near),
-        math.degrees(told[SLOPE].error / lengths[list(SLOPE)].max() / gravity),
+        math.degrees(shares[SLOPE].error / lengths[list(SLOPE)].max() / gravity),
         dict(zip(problem.spec.free, slope.tolist(), strict=False)),
         changes[:, DRAG[0]] * _LAW * decel / max(fastest, 1e-300),
         np.stack([changes[:, kind] @ forces[kind] for kind in near], axis=1),
@@ -267,14 +270,14 @@ class _Explained(NamedTuple):
 def _explained(columns: FloatArray, rows: FloatArray, degrees: int) -> _Explained:
     """What forces (n, k), as shares of all they do, explain of residuals that no unknown does.
 
-    What is left of them below :data:`_SEEN` is what is computed inexactly, and tells nothing.
+    What is left of them below :data:`_VISIBLE` is what is computed inexactly, and tells nothing.
     """
     from scipy.special import fdtrc
 
-    ways, sizes, turned = np.linalg.svd(columns, full_matrices=False)
-    told = sizes > _SEEN
-    ways, seen, turned = ways[:, told], sizes[told], turned[told]
-    along, left, count = ways.T @ rows, float(rows @ rows), seen.size
+    basis, sizes, turned = np.linalg.svd(columns, full_matrices=False)
+    kept = sizes > _VISIBLE
+    basis, seen, turned = basis[:, kept], sizes[kept], turned[kept]
+    along, left, count = basis.T @ rows, float(rows @ rows), seen.size
     less = float(along @ along)
     noise = max((left - less) / (degrees - count), 1e-300)
     chance = float(fdtrc(count, degrees - count, less / count / noise)) if count else 1.0
@@ -302,8 +305,8 @@ def _along(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
         return np.zeros((3, times.size, _FORCES))
     moments = np.linspace(0.0, end, _MOMENTS)
     states, slopes, _ = states_and_slopes(moving, launch, moments)
-    carried, rates = slopes[:, RATE, :DELTA], states[RATE].T
-    onwards = carried[1:] @ np.linalg.inv(carried[:-1])
+    moved, rates = slopes[:, RATE, :DELTA], states[RATE].T
+    onwards = moved[1:] @ np.linalg.inv(moved[:-1])
     forces = np.zeros((_MOMENTS, 3, _FORCES))
     forces[:, [0, 1], [0, 1]] = 1.0
     forces[:, :, DRAG[0]] = -rates

@@ -34,11 +34,11 @@ from puck_tables.fitting.forward_model import (
     states_and_slopes,
     states_of,
 )
-from puck_tables.fitting.parameters import LAUNCH, MARK, OWN_CURVE
+from puck_tables.fitting.parameters import LAUNCH, MARK, OWN_MOTION
 from puck_tables.fitting.unknowns import NumbersOf, Unknowns
 
 _STEP = 1e-6  # of a number: of differences, forward and central
-_CURVE_STEP = 1e-4  # of what has a curve of its own at each value
+_SHAPE_STEP = 1e-4  # of what has a curve of its own at each value
 _LEAST = 1e-2  # that a number is taken to be at least, in its unit, for a step
 _FRAMES = list[tuple[slice, FloatArray, Slide]]
 
@@ -201,8 +201,8 @@ class _Along:
             value, (low, high) = result[name], spec.limits(name)
             step = _STEP * max(abs(value), _LEAST) * (1.0 if value < high else -1.0)
             ends = [value + step]
-            if name in OWN_CURVE:  # known less well
-                ends = [min(value + _CURVE_STEP, high), max(value - _CURVE_STEP, low)]
+            if name in OWN_MOTION:  # known less well
+                ends = [min(value + _SHAPE_STEP, high), max(value - _SHAPE_STEP, low)]
                 step = ends[0] - ends[1]
             for end, part in zip(ends, (1.0 / step, -1.0 / step), strict=False):
                 self._nearby.append(problem.moving({**result, name: end}))

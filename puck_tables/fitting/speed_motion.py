@@ -153,13 +153,13 @@ def _rates(slide: FloatArray, p: FloatArray, y: FloatArray, out: FloatArray) -> 
     turning = (slide[LINEAR] + slide[SPINNING]) / g
     slowing = cosine * cosine * a + sine * sine * inertia * d
     pushed = (abs(slide[PUSH_X]) + abs(slide[PUSH_Y])) / g
-    pace = slip / (slowing + slip * max(ahead, turning) + pushed)  # dt g/ds
+    per_length = slip / (slowing + slip * max(ahead, turning) + pushed)  # dt g/ds
     spun = d + height * height * cosine * cosine * a * b * e / bottom
     along, across = a / (bottom * slip) + ahead, sine * height * a * b / (bottom * slip)
-    out[AHEAD] = -pace * (along * y[AHEAD] - across * y[ASIDE] - slide[PUSH_X] / g)
-    out[ASIDE] = -pace * (along * y[ASIDE] + across * y[AHEAD] - slide[PUSH_Y] / g)
-    out[RIM] = -pace * (inertia * sine * spun + turning * y[RIM])
-    out[TIME] = pace / g
+    out[AHEAD] = -per_length * (along * y[AHEAD] - across * y[ASIDE] - slide[PUSH_X] / g)
+    out[ASIDE] = -per_length * (along * y[ASIDE] + across * y[AHEAD] - slide[PUSH_Y] / g)
+    out[RIM] = -per_length * (inertia * sine * spun + turning * y[RIM])
+    out[TIME] = per_length / g
     out[X] = out[TIME] * y[AHEAD]
     out[Y] = out[TIME] * y[ASIDE]
     out[TURN] = out[TIME] * y[RIM] / slide[RADIUS]
@@ -269,11 +269,11 @@ def speed_paths(
     >>> states[0, [0, 3]].round(3).tolist(), gains[0].round(3).tolist()
     ([[0.375, 0.5], [0.5, 0.0]], [-1.0, 0.0])
     """
-    carried = np.array([[*one.friction.belt, 0.0] for one in launches])
+    velocities = np.array([[*one.friction.belt, 0.0] for one in launches])
     states = np.zeros((_STEPS + 1, len(launches), 7))
-    for row, one, (belt_x, belt_y, _) in zip(states[0], launches, carried.tolist(), strict=True):
+    for row, one, (belt_x, belt_y, _) in zip(states[0], launches, velocities.tolist(), strict=True):
         row[:3] = one.velocity[0] - belt_x, one.velocity[1] - belt_y, one.radius * one.spin
-    drifts = carried[:, :, None] * times, np.repeat(carried[:, :, None], times.size, axis=2)
+    drifts = velocities[:, :, None] * times, np.repeat(velocities[:, :, None], times.size, axis=2)
     if not states[0, 0].any():
         return np.concatenate(drifts, axis=1), np.zeros((3, times.size))
     slides, laws, of_law = [], dict[SpeedLaw, int](), []

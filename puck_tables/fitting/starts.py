@@ -37,9 +37,9 @@ _HEIGHTS = (0.05, 0.2, 0.5, 0.9)  # δ to begin from, all of full contact
 _RATIOS = (0.0, 0.15, 0.3, 0.5, 0.75, 1.1, 1.6, 2.3, 3.5, 6.0, 12.0)
 _DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss of speed
 _FRAMES = 24  # laid beside each other
-_FITTED = 60  # frames to which the guesses are fitted
+_FEW_FRAMES = 60  # frames to which the guesses are fitted
 _KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
-_RIVAL = 15.0  # what minima that are compared on all frames may cost more
+_DEARER = 15.0  # what minima that are compared on all frames may cost more
 _BLIND = 4  # motions that places alone allow
 _NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)  # times the best of these: their gap, finer
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
@@ -78,7 +78,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
                 f"{film.name} would turn by half a turn a frame and more, which is not followed on "
                 "a base: is the unit of its angles right, and launch_spin, if it is held?"
             )
-    part = film.thinned(_FITTED)
+    part = film.thinned(_FEW_FRAMES)
     few = np.isin(film.frame, part.frame)
     starts = []
     for guess in guesses:
@@ -104,7 +104,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
         more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
-    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _RIVAL), more)
+    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _DEARER), more)
 
 
 def _deepest(
@@ -115,17 +115,17 @@ def _deepest(
     Spins of less than half a turn from frame to frame come first unless they are excluded.
     """
     x, least = minima[0]
-    rivals = [x, *(other for other, cost in minima[1:] if cost < least + _RIVAL), *more]
+    deepest = [x, *(other for other, cost in minima[1:] if cost < least + _DEARER), *more]
     marked = problem.films[0].angle is not None
     if marked and "launch_spin" not in problem.spec.fixed:
         spin = problem.names.index((0, "launch_spin"))
         half = half_turns(problem.films[0])
         if abs(x[spin]) > half:
-            rivals.append(x.copy())
-            rivals[-1][spin] = math.remainder(x[spin], 2.0 * half)
-    if len(rivals) == 1:
-        return rivals
-    polished = sorted((minimise_robustly(problem, one) for one in rivals), key=lambda one: one[1])
+            deepest.append(x.copy())
+            deepest[-1][spin] = math.remainder(x[spin], 2.0 * half)
+    if len(deepest) == 1:
+        return deepest
+    polished = sorted((minimise_robustly(problem, one) for one in deepest), key=lambda one: one[1])
     result = [one for one, _ in polished]
     return in_order(problem, result) if marked else result
 

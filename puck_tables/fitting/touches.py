@@ -28,7 +28,7 @@ from puck_tables.fitting.starts import robust_parabola
 
 FAR = 25.0  # of χ²: by so much nearer, and by as much for each 1 of it that is left
 _REACHES = (6, 12, 24, 48)  # frames to either side
-_FEWEST_BESIDE, _CURVED = 3, 5  # frames of a side, and those that tell a curvature
+_FEWEST_NEARBY, _CURVED = 3, 5  # frames of a side, and those that tell a curvature
 _SPIKE = 6.0  # standard deviations of a frame that is no motion
 _JUMPS, _PARTS, _FASTER = 5.0, 4, 1.1  # standard errors; parts of a track; times a speed before
 
@@ -50,7 +50,7 @@ def first_touch(film: Observations, first: int, last: int) -> int | None:
     steady = ~_spikes(film.place, noise)
     rests = rests_from(film, noise)
     best, where = 0.0, None
-    for middle in range(max(first, _FEWEST_BESIDE), min(last, film.time.size - _FEWEST_BESIDE) + 1):
+    for middle in range(max(first, _FEWEST_NEARBY), min(last, film.time.size - _FEWEST_NEARBY) + 1):
         for reach in _REACHES:
             gain = _gain(film, noise, steady, middle, reach, rests)
             if gain > best:
@@ -72,7 +72,7 @@ def pushed(film: Observations, start: int, stop: int) -> bool:
     """
     width = (stop - start) // _PARTS
     noise = noise_of([film])[0]
-    if width < _FEWEST_BESIDE or not noise > 0.0:
+    if width < _FEWEST_NEARBY or not noise > 0.0:
         return False
     slowest, error = math.inf, noise * math.sqrt(12.0 / width**3) / film.usual_step
     for at in range(start, start + _PARTS * width, width):
@@ -93,11 +93,11 @@ def _gain(
     ``rests``: the frame from which on the puck does.  It comes to rest by itself, where its
     acceleration jumps: before that what comes after does not count, there the velocity has to jump.
     """
-    stops = middle >= rests - _FEWEST_BESIDE
+    stops = middle >= rests - _FEWEST_NEARBY
     end = middle + reach if stops else min(middle + reach, rests)
     ends = (max(0, middle - reach), middle), (middle, end)
     sides = [np.flatnonzero(steady[start:stop]) + start for start, stop in ends]
-    if min(side.size for side in sides) < _FEWEST_BESIDE:
+    if min(side.size for side in sides) < _FEWEST_NEARBY:
         return 0.0
     time = film.time - film.time[middle]
     left, count, slopes = 0.0, 0, []
@@ -116,7 +116,7 @@ def _gain(
         jump = math.hypot(*(slopes[1][0] - slopes[0][0]))
         error = math.sqrt(sum(spread / size**3 for _, spread, size, _ in slopes)) * noise
         slowing = 2.0 * math.hypot(*slopes[0][3])
-        hidden = _FEWEST_BESIDE * film.usual_step
+        hidden = _FEWEST_NEARBY * film.usual_step
         hidden += 2.0 * math.sqrt(10.0 * noise / max(slowing, 1e-12))
         if jump < max(_JUMPS * error / film.usual_step, slowing * hidden):
             return 0.0
@@ -178,8 +178,8 @@ def kinks(film: Observations, noise: float) -> list[int]:
     high = max(_USUAL * float(np.median(jump)), _NOISY * error)
     result = []
     for n, size in enumerate(jump.tolist()):
-        beside = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
-        top = max(0, n - _WINDOW) + np.flatnonzero(beside >= _TOP * beside.max())
+        window = jump[max(0, n - _WINDOW) : n + _WINDOW + 1]
+        top = max(0, n - _WINDOW) + np.flatnonzero(window >= _TOP * window.max())
         highest = n == int(top[top.size // 2])
         if highest and size > max(high, _LEAST * float(speed[n])):
             result.append(n + _WINDOW - 1)
@@ -252,7 +252,7 @@ def turns(film: Observations) -> bool:
 
 
 _FEWEST_OUT = 3  # frames at an end that are more than single outliers
-_BESIDE = 0.1  # of the frames that are left, at most
+_NEARBY = 0.1  # of the frames that are left, at most
 _SMALLER = 0.45  # of the frames: a hand or what a wall did
 _SLACK = 3  # frames
 _MOSTLY = 0.7  # of them are outliers
@@ -271,7 +271,7 @@ def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observat
     for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
         out = ~result.kept[x] & (problem.kinds[x] != UNSEEN)
         ends = [_foreign(out), _foreign(out[::-1])]
-        close = math.ceil(min(hidden / film.usual_step, _BESIDE * (out.size - sum(ends))))
+        close = math.ceil(min(hidden / film.usual_step, _NEARBY * (out.size - sum(ends))))
         for n, before in enumerate(ends):
             edge = before if n == 0 else out.size - before
             at = int(np.searchsorted(whole.frame, film.frame[min(edge, out.size - 1)]))

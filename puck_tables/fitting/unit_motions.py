@@ -95,10 +95,10 @@ class UnitMotions:
         own = self.own(float(launch[3]), *ratios, times / frame.time)
         fill_placed_states(launch, times, own, slopes)
         x, y, turn, ahead, aside, rim = own[:, :, 0].T
-        pace = frame.slip / frame.length
+        per_second = frame.slip / frame.length
         states = np.stack([
             *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
-            *(pace * np.array(frame.place(ahead, aside))),
+            *(per_second * np.array(frame.place(ahead, aside))),
             frame.side * (frame.slip / frame.radius) * rim,
         ])  # fmt: skip
         return states, slopes
@@ -241,9 +241,9 @@ class BaseMotions(UnitMotions):
 
     def facing(self, angle: float) -> Self:
         """Motions of a base that stands at an angle (rad) at the launch."""
-        found = copy(self)
-        found.angle = angle
-        return found
+        turned = copy(self)
+        turned.angle = angle
+        return turned
 
     def states(self, launches: FloatArray, times: FloatArray) -> FloatArray:
         """Integrated, at times that ascend."""
@@ -255,9 +255,9 @@ class BaseMotions(UnitMotions):
         slip = np.hypot(np.hypot(rows[0], rows[1]), rows[5] * rows[2])
         moments = times * (rows[4] / np.maximum(slip, 1e-300))[:, None]
         ends = times.shape[1] * np.arange(len(times) + 1)
-        _, found, status = followed(self._packed, rows, _LOCAL_ON_BASE, moments.ravel(), ends, 1)
-        found[np.repeat(status != 0, times.shape[1])] = math.nan
-        out = cartesian(found.T.reshape(-1, *times.shape), 0.0)
+        _, rows_out, status = followed(self._packed, rows, _LOCAL_ON_BASE, moments.ravel(), ends, 1)
+        rows_out[np.repeat(status != 0, times.shape[1])] = math.nan
+        out = cartesian(rows_out.T.reshape(-1, *times.shape), 0.0)
         out[:2] = np.tensordot(turn, out[:2], 1)
         out[3:5] = np.tensordot(turn, out[3:5], 1)
         return out

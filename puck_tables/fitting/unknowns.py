@@ -29,7 +29,7 @@ _FASTER = 10.0  # times the fastest that a track goes from frame to frame
 _RIM = 100.0  # times that speed: the rim, without angles
 _TURNS = 20.0  # a frame, with angles
 _PRIOR = 8.0  # standard deviations of a prior
-_TOLD = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
+_NOTICED = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
 # scales are plausible within their own size, but not less than this
 _LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _PLACES = ("launch_x", "launch_y")
@@ -106,8 +106,8 @@ class Unknowns:
     def names(self) -> tuple[tuple[int, str], ...]:
         """(track, name) of every unknown; −1 for the puck, −2 for the first wall, and so on."""
         launches = [(n, name) for n, names in enumerate(self.launch_names) for name in names]
-        found = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
-        return (*((-1, name) for name in self.spec.free), *launches, *product(found, WALL))
+        walls = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
+        return (*((-1, name) for name in self.spec.free), *launches, *product(walls, WALL))
 
     @cached_property
     def priors(self) -> tuple[tuple[int, float, float], ...]:
@@ -162,7 +162,7 @@ class Unknowns:
         sizes = []
         for track, name in self.names:
             if name == "readout" and self.read_within is not None:
-                sizes.append(_TOLD * self.read_within)
+                sizes.append(_NOTICED * self.read_within)
             elif track == -1:
                 own, least = self.spec.plausible(name), _LEAST.get(name)
                 sizes.append(own if least is None else max(abs(result[name]), least))
@@ -210,8 +210,8 @@ class Unknowns:
 
     def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
         """All walls, given or found."""
-        found = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
-        every = iter(found.tolist())
+        numbers = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
+        every = iter(numbers.tolist())
         return tuple(WallLine(*next(every)) if wall is None else wall for wall in self.walls)
 
     def within(self, x: FloatArray) -> FloatArray:

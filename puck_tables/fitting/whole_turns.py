@@ -24,7 +24,7 @@ from puck_tables.fitting.problem import ANGLE, PLACE, TURN, Problem
 EXCLUDED = 25.0  # of χ²: a spin of less than half a turn a frame
 MISFIT, LESS = 1.5, 5.0  # residuals over the noise that are none, and how many times less count
 _FARTHEST = 16.0  # of the square of a residual
-_DIRECTIONS, _TOLD, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
+_DIRECTIONS, _CERTAIN, _WIDE = 3, 0.3, 3.5  # phases; rad that need no search; standard deviations
 _STEP, _MOST = 0.8, 2e6  # rad; phases of frames that are looked at
 _LOST = 1e4  # rad: places tell nothing of how it turns
 _FOLLOWED = 12  # starts of a search that agree best
@@ -110,16 +110,16 @@ def _judged(
     problem: Problem, rows: list[FloatArray], slow: list[bool]
 ) -> tuple[int, list[float]]:  # fmt: skip
     """Which motion is taken, and χ² of each, from the residuals of each."""
-    scale, told = np.ones((len(rows), problem.kinds.size)), np.ones((len(rows), 2))
+    scale, errors = np.ones((len(rows), problem.kinds.size)), np.ones((len(rows), 2))
     for kind in (PLACE, ANGLE):
         mine = problem.kinds == kind
         if mine.any():
             share = max(1.0 - 0.5 * len(problem.names) / mine.sum(), 0.1)
-            told[:, kind] = [float(np.median(np.abs(one[mine]))) / MEDIAN / share for one in rows]
-            scale[:, mine] = np.maximum(1.0, told[:, kind, None])
+            errors[:, kind] = [float(np.median(np.abs(one[mine]))) / MEDIAN / share for one in rows]
+            scale[:, mine] = np.maximum(1.0, errors[:, kind, None])
     best = int(np.argmin([float(np.minimum(one**2, _FARTHEST).sum()) for one in rows]))
     chi2 = [float(np.minimum((one / scale[best]) ** 2, _FARTHEST).sum()) for one in rows]
-    sizes = told.max(axis=1).tolist()
+    sizes = errors.max(axis=1).tolist()
     return preferred([Judged(*one) for one in zip(slow, chi2, sizes, strict=True)]), chi2
 
 
@@ -138,7 +138,7 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
         whole = problem.unknowns(blind.numbers_at(x), blind.launches(x))
         moved = np.array([k for k, one in enumerate(problem.names) if one in blind.names])
         # of unknowns that places alone tell, no wider than what may be
-        rows, told = blind.residuals_and_jacobian(x)
+        rows, jacobian = blind.residuals_and_jacobian(x)
         _, _, vx, vy, spin, _ = blind.launches(x)[0].tolist()
         rim = math.hypot(vx, vy) / blind.spec.scales(blind.numbers_at(x))[2]
         wide = {"launch_spin": max(abs(spin), rim), "delta": 1.0}
@@ -146,15 +146,15 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
         sizes = np.array([wide.get(name, max(abs(value), least))
                           for (_, name), value in zip(blind.names, x, strict=True)])  # fmt: skip
         excess = max(1.0, float(rows @ rows) / max(rows.size - x.size, 1))
-        square = (told * sizes).T @ (told * sizes) / excess + np.eye(sizes.size)
+        square = (jacobian * sizes).T @ (jacobian * sizes) / excess + np.eye(sizes.size)
         covariance = np.linalg.inv(square) * np.outer(sizes, sizes)
         slopes = problem.jacobian(whole)[problem.kinds == ANGLE][:, moved] * problem.noise[1]
         slopes = slopes - slopes.mean(axis=0)  # where it begins is free
-        variances, ways = np.linalg.eigh(slopes @ covariance @ slopes.T)
+        variances, axes = np.linalg.eigh(slopes @ covariance @ slopes.T)
         order = np.argsort(-variances)[:_DIRECTIONS]
-        spreads, ways = np.sqrt(np.maximum(variances[order], 0.0)), ways[:, order]
-        swings = spreads * np.abs(ways).max(axis=0)
-        counts = [1 + 2 * math.ceil(_WIDE * one / _STEP) if one > _TOLD else 1 for one in swings]
+        spreads, axes = np.sqrt(np.maximum(variances[order], 0.0)), axes[:, order]
+        swings = spreads * np.abs(axes).max(axis=0)
+        counts = [1 + 2 * math.ceil(_WIDE * one / _STEP) if one > _CERTAIN else 1 for one in swings]
         if not np.isfinite(swings).all() or swings.max() > _LOST:
             continue
         fewer = (math.prod(counts) * seen.sum() / _MOST) ** (1.0 / _DIRECTIONS)
@@ -163,13 +163,13 @@ def by_place(problem: Problem, blind: Problem, minima: list[FloatArray]) -> list
         grid = np.array(list(product(*sides)))
         path = problem.paths(whole)[0][TURN, seen]
         deviations = np.exp(1j * (film.angle[seen] - path))
-        together = np.exp(-1j * (grid * spreads) @ ways.T) @ deviations / deviations.size
+        together = np.exp(-1j * (grid * spreads) @ axes.T) @ deviations / deviations.size
         for k in np.argsort(-np.abs(together))[:_FOLLOWED]:
-            change = ways @ (grid[k] * np.divide(1.0, spreads, where=spreads > 0.0,
+            change = axes @ (grid[k] * np.divide(1.0, spreads, where=spreads > 0.0,
                                                  out=np.zeros_like(spreads)))  # fmt: skip
             one = whole.copy()
             one[moved] += covariance @ slopes.T @ change
-            turned = path + ways @ (grid[k] * spreads) + np.angle(together[k])
+            turned = path + axes @ (grid[k] * spreads) + np.angle(together[k])
             angle = np.full(film.time.size, np.nan)
             angle[seen] = film.angle[seen]
             angle[seen] += 2.0 * math.pi * np.round((turned - angle[seen]) / (2.0 * math.pi))

@@ -40,7 +40,7 @@ class AirHockey(TableGame):
 
     Each keeps to its half.  It earns the left player 1 as the puck falls into the right goal, −1 as
     it falls into the left one, and the game is over; 20 s at most.  The puck is served from the
-    middle at up to 1 m/s.  Seen are x, y of the own mallet, the other, and the puck, m, their vx,
+    middle at up to 1 m/s.  Obs are x, y of the own mallet, the other, and the puck, m, their vx,
     vy, m/s, and the spin of the puck, rad/s: by the left player, then the same by the right one,
     who sees the table, and moves, as if it were the left one.
     """
@@ -58,8 +58,8 @@ class AirHockey(TableGame):
     def begin(self, tables: Tables, boards: Whole, rng: np.random.Generator) -> None:
         """Serve."""
         super().begin(tables, boards, rng)
-        way, speed = rng.uniform(-np.pi, np.pi, len(boards)), rng.uniform(0.0, _SERVE, len(boards))
-        tables.worlds.strike(0, sent(speed, way), boards=boards)
+        turn, speed = rng.uniform(-np.pi, np.pi, len(boards)), rng.uniform(0.0, _SERVE, len(boards))
+        tables.worlds.strike(0, sent(speed, turn), boards=boards)
 
     def move(
         self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
@@ -127,7 +127,7 @@ def guard(seen: FloatArray, speed: float = 1.5) -> FloatArray:
     own, puck, speeds = seen[:, :2], seen[:, 4:6], np.hypot(seen[:, 10], seen[:, 11])
     near = (puck[:, 0] < 0.5 * _LONG) & (speeds < speed) & (puck[:, 0] > own[:, 0])
     home = np.column_stack([np.full(len(seen), _HOME), np.clip(puck[:, 1], 0.4, 0.7)])
-    way = np.where(near[:, None], puck, home) - own
-    far = np.hypot(*way.T)[:, None]
+    path = np.where(near[:, None], puck, home) - own
+    far = np.hypot(*path.T)[:, None]
     fast = np.minimum(speed, 10.0 * far) / _FASTEST  # m/s: it slows down as it arrives
-    return np.asarray(np.divide(way * fast, far, out=np.zeros_like(way), where=far > 0.0))
+    return np.asarray(np.divide(path * fast, far, out=np.zeros_like(path), where=far > 0.0))

@@ -194,7 +194,7 @@ class Carrom(ShotGame):
 
     An action is the place of the striker on its base line, ±0.21 m, its direction, ±80° to the line
     across, and its speed, 0.2 to 6 m/s; where a man is in the way, the nearest free place is taken.
-    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Seen are x, y, m,
+    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Obs are x, y, m,
     of all men and 1 for each on the board, then the share of shots made.
     """
 
@@ -221,9 +221,9 @@ class Carrom(ShotGame):
         wanted = np.column_stack([0.21 * actions[:, 0], np.full(len(boards), place)])
         states, there = worlds.state()[boards], worlds.in_play[boards]
         at, free = free_places(wanted, self._line, states[:, :-1, :2], there[:, :-1], self._gaps)
-        way, speed = np.radians(80.0) * actions[:, 1], between(actions[:, 2], 0.2, 6.0)
+        heading, speed = np.radians(80.0) * actions[:, 1], between(actions[:, 2], 0.2, 6.0)
         striker = np.full(free.sum(), len(self._worth))
-        self.send(tables, boards[free], striker, at[free], sent(speed, 0.5 * np.pi - way)[free])
+        self.send(tables, boards[free], striker, at[free], sent(speed, 0.5 * np.pi - heading)[free])
 
     def score(self, tables: Tables) -> FloatArray:
         """What is in the pockets; the striker is there only just after its shot."""
@@ -246,7 +246,7 @@ class Crokinole(ShotGame):
 
     An action is the place on the line of the own quarter, ±45°, the direction, ±30° to the middle,
     and the speed, 0.2 to 3 m/s.  Points are those of the own discs less those of the others: 20 in
-    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Seen are
+    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Obs are
     x, y, m, of all discs, own first, and 1 for each on the board, then the share of shots made.
     """
 
@@ -279,8 +279,11 @@ class Crokinole(ShotGame):
         for k in range(self.limit):
             tables.worlds.remove(k, boards=boards)
         for k, (low, high) in enumerate(((0.03, 0.07), (0.13, 0.18), (0.21, 0.24))):
-            far, way = rng.uniform(low, high, len(boards)), rng.uniform(-np.pi, np.pi, len(boards))
-            tables.worlds.place(self.limit + k, sent(far, way), boards=boards)
+            far, angle = (
+                rng.uniform(low, high, len(boards)),
+                rng.uniform(-np.pi, np.pi, len(boards)),
+            )
+            tables.worlds.place(self.limit + k, sent(far, angle), boards=boards)
 
     def shoot(
         self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator
@@ -291,10 +294,10 @@ class Crokinole(ShotGame):
         states, there = worlds.state()[boards], worlds.in_play[boards]
         gaps = np.full(len(self.scene.pucks), 2.0001 * self._radius)
         at, free = free_places(wanted, self._line, states[:, :, :2], there, gaps)
-        way = np.arctan2(-at[:, 1], -at[:, 0]) + np.radians(30.0) * actions[:, 1]
+        heading = np.arctan2(-at[:, 1], -at[:, 0]) + np.radians(30.0) * actions[:, 1]
         speed = between(actions[:, 2], 0.2, 3.0)
         number = tables.moves[boards]
-        self.send(tables, boards[free], number[free], at[free], sent(speed, way)[free])
+        self.send(tables, boards[free], number[free], at[free], sent(speed, heading)[free])
 
     def score(self, tables: Tables) -> FloatArray:
         """Of own discs that were shot, less those of the others."""

@@ -22,7 +22,7 @@ from puck_tables.gym.stone_games import Curling, Shuffleboard
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.worlds import Worlds
 
-Seen = npt.NDArray[np.float32]
+Obs = npt.NDArray[np.float32]
 GAMES: dict[str, type[TableGame]] = {
     kind.__name__: kind
     for kind in (AirHockey, AirHockeyAlone, Carrom, Crokinole, Shuffleboard, Curling, PushToPose)
@@ -31,7 +31,7 @@ _MODES = ("rgb_array", "human")
 RENDERED: dict[str, Any] = {"render_modes": list(_MODES), "render_fps": 60}
 
 
-class ManyTables(VectorEnv[Seen, Any, Any]):
+class ManyTables(VectorEnv[Obs, Any, Any]):
     """A game on many boards at once, all in one compiled call on all cores.
 
     A board whose game is over begins anew at the next step, whose action for it counts for nothing
@@ -95,7 +95,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Seen, dict[str, Any]]:
+    ) -> tuple[Obs, dict[str, Any]]:
         """Begin anew on all boards; what is seen.
 
         ``options`` are for none here.
@@ -107,7 +107,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         self._begin(np.arange(self.num_envs))
         return self._observed(), {}
 
-    def step(self, actions: npt.ArrayLike) -> tuple[Seen, FloatArray, Truth, Truth, dict[str, Any]]:
+    def step(self, actions: npt.ArrayLike) -> tuple[Obs, FloatArray, Truth, Truth, dict[str, Any]]:
         """Make a move on every board: what is seen, earned, where a game ended, or was cut off.
 
         Parameters
@@ -121,20 +121,20 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         """
         if not self._old:
             raise InputError("reset the environment before its first step")
-        given = self._checked(actions, self.num_envs)
+        chosen = self._checked(actions, self.num_envs)
         anew, playing = np.flatnonzero(self._over), np.flatnonzero(~self._over)
         earned, ended = np.zeros(self.num_envs), np.zeros(self.num_envs, bool)
         if playing.size:
             tables, rng = self.tables, self.np_random
-            earned[playing], ended[playing] = self.game.move(tables, playing, given[playing], rng)
+            earned[playing], ended[playing] = self.game.move(tables, playing, chosen[playing], rng)
         failed = self.tables.failed.copy()
         earned[failed], ended[failed] = 0.0, False
-        cut = failed | ((self.tables.moves >= self.game.limit) & ~ended)
+        truncated = failed | ((self.tables.moves >= self.game.limit) & ~ended)
         if anew.size:
-            cut[anew] = False
+            truncated[anew] = False
             self._begin(anew)
-        self._over = ended | cut
-        return self._observed(), earned, ended, cut, {}
+        self._over = ended | truncated
+        return self._observed(), earned, ended, truncated, {}
 
     def outcomes(self, actions: npt.ArrayLike, moves: int = 1, board: int = 0) -> FloatArray:
         """What each of several actions would earn now, array (n,): to look ahead.
@@ -162,12 +162,12 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         """
         if not self._old:
             raise InputError("reset the environment before its first step")
-        given = self._checked(actions, None)
-        tables = self.tables.copy(np.full(len(given), board))
-        earned, playing = np.zeros(len(given)), np.arange(len(given))
+        chosen = self._checked(actions, None)
+        tables = self.tables.copy(np.full(len(chosen), board))
+        earned, playing = np.zeros(len(chosen)), np.arange(len(chosen))
         for _ in range(moves):
             rng = np.random.default_rng(int(tables.moves.sum()))
-            won, over = self.game.move(tables, playing, given[playing], rng)
+            won, over = self.game.move(tables, playing, chosen[playing], rng)
             won[tables.failed[playing]] = 0.0
             earned[playing] += won
             playing = playing[~over & ~tables.failed[playing]]
@@ -207,7 +207,7 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         for row in self._old:
             row[boards] = now[boards]
 
-    def _observed(self) -> Seen:
+    def _observed(self) -> Obs:
         """What is seen, late and with errors."""
         self._old = [*self._old[1:], self.game.seen(self.tables)]
         seen = self._old[0].copy()
@@ -217,16 +217,16 @@ class ManyTables(VectorEnv[Seen, Any, Any]):
         return seen.astype(np.float32)
 
     def _checked(self, actions: npt.ArrayLike, count: int | None) -> FloatArray:
-        given = finite_array("actions", actions, "from -1 to 1")
-        shape = (len(given) if count is None and given.ndim else count, self.game.actions)
-        if given.shape != shape or np.abs(given).max(initial=0.0) > 1.0:
-            most = np.abs(given).max(initial=0.0)
+        checked = finite_array("actions", actions, "from -1 to 1")
+        shape = (len(checked) if count is None and checked.ndim else count, self.game.actions)
+        if checked.shape != shape or np.abs(checked).max(initial=0.0) > 1.0:
+            most = np.abs(checked).max(initial=0.0)
             raise InputError(f"actions must have the shape {shape}, from -1 to 1, got "
-                             f"{given.shape}, up to {most:g}")  # fmt: skip
-        return given
+                             f"{checked.shape}, up to {most:g}")  # fmt: skip
+        return checked
 
 
-class OneTable(gymnasium.Env[Seen, Any]):
+class OneTable(gymnasium.Env[Obs, Any]):
     """A game on one board; parameters as of :class:`ManyTables`, and factors drawn at each game.
 
     >>> table = OneTable("Crokinole")
@@ -245,20 +245,20 @@ class OneTable(gymnasium.Env[Seen, Any]):
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Seen, dict[str, Any]]:
+    ) -> tuple[Obs, dict[str, Any]]:
         """Begin anew; what is seen."""
         super().reset(seed=seed)
         self.many.np_random = self.np_random
-        seen, told = self.many.reset()
+        seen, info = self.many.reset()
         self._rendered()
-        return seen[0], told
+        return seen[0], info
 
-    def step(self, action: npt.ArrayLike) -> tuple[Seen, float, bool, bool, dict[str, Any]]:
+    def step(self, action: npt.ArrayLike) -> tuple[Obs, float, bool, bool, dict[str, Any]]:
         """Make a move: what is seen, earned, whether the game ended, or was cut off."""
         parts = self.many.step(np.asarray(action)[None])
         self._rendered()
-        seen, earned, ended, cut, told = parts
-        return seen[0], float(earned[0]), bool(ended[0]), bool(cut[0]), told
+        seen, earned, ended, truncated, info = parts
+        return seen[0], float(earned[0]), bool(ended[0]), bool(truncated[0]), info
 
     def outcomes(self, actions: npt.ArrayLike, moves: int = 1) -> FloatArray:
         """What each of several actions would earn now, as :meth:`ManyTables.outcomes`."""

@@ -20,7 +20,7 @@ class PushToPose(TableGame):
 
     An action is vx, vy of the finger, of 0.25 m/s each, for 0.05 s; at most 200 of them.  Each
     earns what it brings the disc nearer, m, angles times the radius, and 1 more as it arrives, by
-    5 mm and 5°: then the game is over.  Seen are x, y, m, of the disc and of the finger, and cosine
+    5 mm and 5°: then the game is over.  Obs are x, y, m, of the disc and of the finger, and cosine
     and sine of the angle.
     """
 
@@ -45,11 +45,11 @@ class PushToPose(TableGame):
         """The disc anywhere some 10 to 20 cm away, the finger behind it."""
         super().begin(tables, boards, rng)
         count = len(boards)
-        way = rng.uniform(-np.pi, np.pi, count)
-        disc = sent(rng.uniform(0.1, 0.2, count), way)
+        heading = rng.uniform(-np.pi, np.pi, count)
+        disc = sent(rng.uniform(0.1, 0.2, count), heading)
         angle = rng.uniform(-0.5, 0.5, count)
         tables.worlds.place("disc", disc, angle, boards=boards)
-        behind = disc + sent(np.full(count, 2.0 * _RADIUS), way)
+        behind = disc + sent(np.full(count, 2.0 * _RADIUS), heading)
         tables.worlds.place("finger", behind, boards=boards)
 
     def move(

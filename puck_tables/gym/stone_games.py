@@ -62,8 +62,8 @@ class StoneGame(ShotGame):
     ) -> None:
         """A stone of the others, then one of one's own."""
         number = tables.moves[boards]
-        for first, given in ((self.limit, self.theirs(rng, len(boards))), (0, actions)):
-            self.send(tables, boards, first + number, *self.throw(given))
+        for first, thrown in ((self.limit, self.theirs(rng, len(boards))), (0, actions)):
+            self.send(tables, boards, first + number, *self.throw(thrown))
             self.clear(tables, boards, number + 1)
 
     def clear(self, tables: Tables, boards: Whole, thrown: Whole) -> None:
@@ -106,7 +106,7 @@ class Curling(StoneGame):
     the tee, and the spin, ±2 rad/s.  The others draw to the tee, with errors of 0.02 m/s and 0.15°
     (standard deviations).  The score of the end is earned with its last stone: one for each stone
     in the house that is nearer to the tee than all of the other side.  Stones short of the hog line
-    are taken off.  Seen are x, y, m, from the tee, of the stones that were thrown, own first, and 1
+    are taken off.  Obs are x, y, m, from the tee, of the stones that were thrown, own first, and 1
     for each in play, then the share of stones thrown.
     """
 
@@ -137,15 +137,15 @@ class Curling(StoneGame):
 
     def throw(self, actions: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """From the near hog line."""
-        speed, way = between(actions[:, 0], 1.8, 3.2), np.radians(5.0) * actions[:, 1]
+        speed, heading = between(actions[:, 0], 1.8, 3.2), np.radians(5.0) * actions[:, 1]
         at = np.broadcast_to(self.start, (len(actions), 2))
-        return at, sent(speed, way), 2.0 * actions[:, 2]
+        return at, sent(speed, heading), 2.0 * actions[:, 2]
 
     def theirs(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Draws to the tee, that curl from either side."""
-        speed, way, spin = (np.array(self._DRAW) + self._ERRORS * rng.normal(size=(count, 3))).T
+        speed, heading, spin = (np.array(self._DRAW) + self._ERRORS * rng.normal(size=(count, 3))).T
         side = rng.choice([-1.0, 1.0], count)
-        return np.column_stack([(speed - 2.5) / 0.7, side * way / 5.0, side * spin / 2.0])
+        return np.column_stack([(speed - 2.5) / 0.7, side * heading / 5.0, side * spin / 2.0])
 
     def clear(self, tables: Tables, boards: Whole, thrown: Whole) -> None:
         """Stones that stopped short of the hog line."""
@@ -166,7 +166,7 @@ class Shuffleboard(StoneGame):
     An action is the place across, ±0.2 m, the speed, 1.2 to 2.4 m/s, the direction, ±2°, and the
     spin, ±10 rad/s.  The others send theirs for the end, with an error of 0.05 m/s.  The weights of
     one side that are beyond all of the other count: 3 in the last 6 in, 2 in the 6 in before, 1 up
-    to 6 ft before the end.  Seen are x, y, m, of the weights that were sent, own first, and 1 for
+    to 6 ft before the end.  Obs are x, y, m, of the weights that were sent, own first, and 1 for
     each on the table, then the share of weights sent.
     """
 
@@ -184,9 +184,9 @@ class Shuffleboard(StoneGame):
 
     def throw(self, actions: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """From the near end."""
-        speed, way = between(actions[:, 1], 1.2, 2.4), np.radians(2.0) * actions[:, 2]
+        speed, heading = between(actions[:, 1], 1.2, 2.4), np.radians(2.0) * actions[:, 2]
         at = np.column_stack([np.full(len(actions), self.start[0]), 0.2 * actions[:, 0]])
-        return at, sent(speed, way), 10.0 * actions[:, 3]
+        return at, sent(speed, heading), 10.0 * actions[:, 3]
 
     def theirs(self, rng: np.random.Generator, count: int) -> FloatArray:
         """Straight on, anywhere across, to the end."""

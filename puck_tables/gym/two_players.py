@@ -8,12 +8,12 @@ import numpy as np
 from gymnasium.spaces import Box
 from pettingzoo import ParallelEnv
 
-from puck_tables.gym.envs import RENDERED, ManyTables, Seen
+from puck_tables.gym.envs import RENDERED, ManyTables, Obs
 
 PLAYERS = ("left", "right")
 
 
-class TwoPlayers(ParallelEnv[str, Seen, Any]):
+class TwoPlayers(ParallelEnv[str, Obs, Any]):
     """Air hockey: an action of each is vx, vy of its mallet, from −1 to 1, of 4 m/s.
 
     Each sees the table from its end, as :class:`puck_tables.gym.air_hockey.AirHockey` tells; a goal
@@ -49,7 +49,7 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, Seen], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, Obs], dict[str, dict[str, Any]]]:
         """Serve; what each sees."""
         self.agents = list(PLAYERS)
         seen, _ = self._many.reset(seed=seed)
@@ -58,13 +58,13 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
     def step(self, actions: dict[str, Any]) -> tuple[dict[str, Any], ...]:
         """A frame: what each sees and earns, whether the game ended, or was cut off."""
         both = np.concatenate([actions[one] for one in PLAYERS])
-        seen, earned, ended, cut, _ = self._many.step(both[None])
-        if ended[0] or cut[0]:
+        seen, earned, ended, truncated, _ = self._many.step(both[None])
+        if ended[0] or truncated[0]:
             self.agents = []
         won = float(earned[0])
         return (
             self._split(seen), dict(zip(PLAYERS, (won, 0.0 - won), strict=True)),
-            dict.fromkeys(PLAYERS, bool(ended[0])), dict.fromkeys(PLAYERS, bool(cut[0])),
+            dict.fromkeys(PLAYERS, bool(ended[0])), dict.fromkeys(PLAYERS, bool(truncated[0])),
             {one: {} for one in PLAYERS},
         )  # fmt: skip
 
@@ -72,7 +72,7 @@ class TwoPlayers(ParallelEnv[str, Seen, Any]):
         """A picture, if a mode was asked for."""
         return self._many.picture()
 
-    def _split(self, seen: Seen) -> dict[str, Seen]:
+    def _split(self, seen: Obs) -> dict[str, Obs]:
         return dict(zip(PLAYERS, np.split(seen[0], 2), strict=True))
 
 

@@ -87,14 +87,14 @@ def to_xarray(dataset: Dataset) -> xarray.Dataset:
     dataset_of = _xarray().Dataset
     attributes = {name: value for name, value in dataset.attributes.items() if value is not None}
     attributes |= {name: text for name, (text, _) in dataset.texts.items()}
-    found: xarray.Dataset = dataset_of(
+    result: xarray.Dataset = dataset_of(
         *(
             {name: (one.dims, np.asarray(one.values), one.attributes) for name, one in part.items()}
             for part in (dataset.columns, dataset.axes)
         ),
         attributes,
     )
-    return found
+    return result
 
 
 def open_store(path: str | Path) -> xarray.Dataset:
@@ -103,8 +103,8 @@ def open_store(path: str | Path) -> xarray.Dataset:
     Raises MissingExtraError if xarray is not installed.
     """
     chunks: Any = {} if find_spec("dask") is not None else None
-    found: xarray.Dataset = _xarray().open_zarr(path, chunks=chunks)
-    return found
+    dataset: xarray.Dataset = _xarray().open_zarr(path, chunks=chunks)
+    return dataset
 
 
 def _xarray() -> Any:

@@ -209,9 +209,10 @@ def code_for(triple: str, record: Any, doors: Sequence[Outside]) -> bytes:
     """
     kind = _typeof(record)
     names = [(one.name, one.kernel.__qualname__, one.arguments) for one in doors]
-    asked = repr((kind, names, numba.__version__, binding.llvm_version_info))
+    request = repr((kind, names, numba.__version__, binding.llvm_version_info))
     folder = cache_folder()
-    kept = folder and folder / f"{triple}-{hashlib.sha256(asked.encode()).hexdigest()[:16]}.object"
+    digest = hashlib.sha256(request.encode()).hexdigest()[:16]
+    kept = folder and folder / f"{triple}-{digest}.object"
     if kept is not None and (content := read_sealed(kept)) is not None:
         return content
     say("compiling the kernels for another machine, once: about a minute")
@@ -281,13 +282,13 @@ def _add_function(module: Any, name: str, code: Any, inputs: list[Any], result: 
     called = convention.get_function_type(code.signature.return_type, code.signature.args)
     inside = ir.Function(module, called, code.fndesc.llvm_func_name)
     builder = ir.IRBuilder(outside.append_basic_block())
-    found = builder.alloca(_WORD if result == _STATUS else result)
-    handed = [found, builder.alloca(_ADDRESS), *outside.args]
+    result_at = builder.alloca(_WORD if result == _STATUS else result)
+    handed = [result_at, builder.alloca(_ADDRESS), *outside.args]
     for n, (one, argument) in enumerate(zip(handed, inside.args, strict=True)):
         if one.type == _STATUS:
             handed[n] = builder.sext(one, _WORD)
         elif one.type != argument.type:
             handed[n] = builder.bitcast(one, argument.type)
     builder.call(inside, handed)
-    value = builder.load(found)
+    value = builder.load(result_at)
     builder.ret(builder.trunc(value, _STATUS) if result == _STATUS else value)

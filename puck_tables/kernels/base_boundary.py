@@ -116,9 +116,9 @@ def line_sums(
         sums, half = NOTHING, 0.5 * length
         mx, my = 0.5 * (x + to_x), 0.5 * (y + to_y)
         for i in range(_NODES):
-            way = half * _NODE[i]
+            offset = half * _NODE[i]
             weight = half * _WEIGHT[i]
-            here = sums_at(alpha, beta, mx + way * tx, my + way * ty, tx, ty)
+            here = sums_at(alpha, beta, mx + offset * tx, my + offset * ty, tx, ty)
             sums = added(sums, weight, here)
         return sums
     # s along it from the foot (x0, y0) of the disc's centre; w/β = hypot(s − place, off)

@@ -65,12 +65,12 @@ def packed(base: Base, lever: float) -> FloatArray:
     middle, sides = np.array(base.middle), []
     for outline in base.outlines:
         corners = np.array(outline) - middle
-        way = np.roll(corners, -1, axis=0) - corners
-        length = np.hypot(*way.T)
+        along = np.roll(corners, -1, axis=0) - corners
+        length = np.hypot(*along.T)
         anew = np.zeros(len(corners))
         anew[0] = 1.0
         last, turn = np.roll(corners, -1, axis=0), np.zeros(len(corners))
-        rows = [corners, way / length[:, None], length, anew, last, turn]
+        rows = [corners, along / length[:, None], length, anew, last, turn]
         sides.append(np.column_stack(rows).ravel())
     discs = []
     for x, y, radius, sign in base.discs:

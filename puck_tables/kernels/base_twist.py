@@ -33,7 +33,7 @@ from puck_tables.kernels.compile import inlined, inner, patience
 
 Plane = tuple[float, float, float, float, float, float]  # two unit vectors across W
 _STEPS = 60  # of Newton's method; it takes 3 to 12
-_CUTS = 30  # of one step
+_HALVINGS = 30  # of one step
 _SLOPE = 0.5  # of the fall at its beginning: a step at whose end D rises more steeply is cut
 _GOOD = 1e-15  # of f N: across W less is rounding
 _MOST = 1e-11  # of f N: across W more is not found
@@ -120,7 +120,7 @@ def _newton(
         if not left > _GOOD or not math.isfinite(p + q):
             break
         before, begin, share, better = left, along * p + across * q, 1.0, False
-        for _ in range(_CUTS):
+        for _ in range(_HALVINGS):
             dx, dy, dz = p * ax + q * bx, p * ay + q * by, p * az + q * bz
             nx, ny, nz = x + share * dx, y + share * dy, z + share * dz
             fx, fy, fz = _scaled(base, size, nx, ny, nz, slopes)

@@ -91,12 +91,12 @@ def _add_circle(
             f_far, f_near, slope = both(pieces, far, near, speed * mean, speed * step)
             both_over = f_far / high + f_near / low
             apart = mean * speed * slope - 0.5 * (f_far + f_near)
-            bend = 4.0 * c * c * apart / (high * low * (high + low))
+            curvature = 4.0 * c * c * apart / (high * low * (high + low))
             weight = half * WEIGHTS[i]
-            a += weight * (both_over + rim * rim * bend)
+            a += weight * (both_over + rim * rim * curvature)
             b += weight * sine * sine * both_over
-            d += weight * (both_over + alpha * alpha * bend)
-            e -= weight * (c * c * both_over + rim * rim * bend)
+            d += weight * (both_over + alpha * alpha * curvature)
+            e -= weight * (c * c * both_over + rim * rim * curvature)
     share, square = share / math.pi, rho * rho
     out[0] += share * a
     out[1] += share * square * b
@@ -138,9 +138,9 @@ def _load_at(
         count = _sorted_in(places, 0, at, low, high)
         if speed * rim > 0.0:
             for n in range(len(kinks)):
-                for way in range(3):
-                    corner = (kinks[n] / speed * (1.0 if way < 2 else -1.0)
-                              + (alpha if way > 0 else -alpha)) / rim  # fmt: skip
+                for direction in range(3):
+                    corner = (kinks[n] / speed * (1.0 if direction < 2 else -1.0)
+                              + (alpha if direction > 0 else -alpha)) / rim  # fmt: skip
                     inside = curved and 0.0 < corner < 1.0
                     corner = math.asin(corner) if inside else corner
                     if inside or not curved:

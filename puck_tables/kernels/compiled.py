@@ -56,15 +56,15 @@ class _Announcer(event.Listener):
     """
 
     def __init__(self) -> None:
-        self._found: list[tuple[int, int, int]] = []
+        self._thresholds: list[tuple[int, int, int]] = []
 
     def on_start(self, event: Any) -> None:
-        self._found.append(gc.get_threshold())
-        gc.set_threshold(1_000_000, *self._found[-1][1:])
+        self._thresholds.append(gc.get_threshold())
+        gc.set_threshold(1_000_000, *self._thresholds[-1][1:])
 
     def on_end(self, event: Any) -> None:
-        if self._found:  # none where a function of somebody else's began before this was here
-            gc.set_threshold(*self._found.pop())
+        if self._thresholds:  # none where a function of somebody else's began before this was here
+            gc.set_threshold(*self._thresholds.pop())
 
 
 event.register("numba:compile", _Announcer())  # type: ignore[no-untyped-call]
@@ -235,13 +235,13 @@ def entry_for(dispatcher: Any, args: tuple[Any, ...]) -> Any:
     """The compiled code for such arguments, which looks at no types; None where there is none."""
     if fingerprint is None:
         return None
-    asked = dispatcher, fingerprint(args)  # 9 µs; their types of a board 0.8 ms
-    if asked not in _entries:
+    request = dispatcher, fingerprint(args)  # 9 µs; their types of a board 0.8 ms
+    if request not in _entries:
         code = dispatcher.overloads.get(tuple(dispatcher.typeof_pyval(one) for one in args))
         if code is None:
             return None
-        _entries[asked] = code.entry_point
-    return _entries[asked]
+        _entries[request] = code.entry_point
+    return _entries[request]
 
 
 @_deep
@@ -254,11 +254,11 @@ def code_for(door: KernelDoor, args: tuple[Any, ...]) -> Callable[..., Any]:
 
 def _at_door(door: KernelDoor, template_for: Callable[..., Any], args: Any, named: Any) -> Any:
     with _compiling(door):
-        found = _whatever_its_value(template_for, args, named)
+        template = _whatever_its_value(template_for, args, named)
     if linked_at_doors and kept_code:  # numba's own cache would not bring the door along
         for kinds, code in door.compiled.overloads.items():
             _name_door(door.py_func, kinds, code)
-    return found
+    return template
 
 
 def _name_door(function: Any, kinds: tuple[Any, ...], code: Any) -> None:

@@ -118,8 +118,8 @@ def contour_sums(
         for at in range(first, last, PIECE_COLUMNS):
             if abs(room[at + TURN]) == 2.0 * math.pi:
                 x, y, radius = room[at + ABOUT_X], room[at + ABOUT_Y], room[at + RADIUS]
-                way = math.copysign(1.0, room[at + TURN])
-                sums = plus(sums, way, disc_at(x, y, radius, ux, uy, w))
+                sense = math.copysign(1.0, room[at + TURN])
+                sums = plus(sums, sense, disc_at(x, y, radius, ux, uy, w))
         return sums
     slip, sums = _slip_of(base, ux, uy, w), NOTHING
     for at in range(first, last, PIECE_COLUMNS):

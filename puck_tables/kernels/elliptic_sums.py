@@ -109,9 +109,9 @@ def disc_sums(law: Ellipse, vx: float, vy: float, rim: float) -> Sums:
         fx, fy = local_friction(law, vx / speed, vy / speed)
         quarter = 0.25 * math.pi
         return math.pi * fx, math.pi * fy, 0.0, 0.0, 0.0, 0.0, quarter * fy, -quarter * fx
-    way = 1.0 if rim > 0.0 else -1.0
+    sense = 1.0 if rim > 0.0 else -1.0
     # from the instantaneous centre to the middle of the disc
-    ox, oy = (way * vy / speed, -way * vx / speed) if speed > 0.0 else (1.0, 0.0)
+    ox, oy = (sense * vy / speed, -sense * vx / speed) if speed > 0.0 else (1.0, 0.0)
     inside = speed <= fast
     ratio = speed / fast if inside else fast / speed
     gap = (1.0 - ratio) * (1.0 + ratio)
@@ -123,10 +123,10 @@ def disc_sums(law: Ellipse, vx: float, vy: float, rim: float) -> Sums:
     place = -math.atan(sine / cosine) if cosine != 0.0 else 0.5 * math.pi
     if not inside:
         turn = math.cos(place) / ratio
-        bend = math.sin(place) / ratio
-        bend = min(max(bend, -1.0), 1.0)
-        place = math.asin(bend)
-        sharp *= turn / max(math.sqrt(1.0 - bend * bend), math.sqrt(sharp * turn))
+        folded = math.sin(place) / ratio
+        folded = min(max(folded, -1.0), 1.0)
+        place = math.asin(folded)
+        sharp *= turn / max(math.sqrt(1.0 - folded * folded), math.sqrt(sharp * turn))
     branch, sharp = max(branch, _CLOSEST), max(sharp, _CLOSEST)
     sums = NOTHING
     start, last = -0.5 * math.pi, 0.5 * math.pi
@@ -155,7 +155,7 @@ def disc_sums(law: Ellipse, vx: float, vy: float, rim: float) -> Sums:
                 second = area * cos_q * cos_q / 3.0
                 first = second * ratio / cos_t
             nx, ny = cos_t * ox - sin_t * oy, cos_t * oy + sin_t * ox
-            tx, ty = local_friction(law, -way * ny, way * nx)
+            tx, ty = local_friction(law, -sense * ny, sense * nx)
             # torque of friction about the middle of the chord, and along it
             arm, along = -(nx * tx + ny * ty), nx * ty - ny * tx
             px, py = nx * first - off * ny * area, ny * first + off * nx * area
@@ -274,12 +274,12 @@ def elliptic_sums(
     p, q, c, s = law.along / most, law.across / most, law.cosine, law.sine
     vx, vy, rim = p * (c * ux + s * uy), q * (c * uy - s * ux), reach * abs(w)
     speed = math.sqrt(vx * vx + vy * vy)
-    unit, way = 1.0 / math.sqrt(speed * speed + rim * rim), -1.0 if w < 0.0 else 1.0
+    unit, sense = 1.0 / math.sqrt(speed * speed + rim * rim), -1.0 if w < 0.0 else 1.0
     ex, ey = (vx / speed, vy / speed) if speed > 0.0 else (1.0, 0.0)
     x, y = q / reach, p / reach
     one = Stretched(
         unit * speed, unit * rim, ex * x * c - ey * y * s, ex * x * s + ey * y * c,
-        way * (-ey * x * c - ex * y * s), way * (ex * y * c - ey * x * s),
+        sense * (-ey * x * c - ex * y * s), sense * (ex * y * c - ey * x * s),
     )  # fmt: skip
     sums, discs = NOTHING, NOTHING
     for at in range(first, last, PIECE_COLUMNS):
@@ -287,15 +287,15 @@ def elliptic_sums(
         if abs(row[TURN]) == _WHOLE:
             discs = plus(discs, 1.0, _disc(law, row, ux, uy, w))
         elif row[TURN] != 0.0:
-            sums = plus(sums, way, _along_arc(one, row))
+            sums = plus(sums, sense, _along_arc(one, row))
         else:
             px, py, qx, qy = row[BEGIN_X], row[BEGIN_Y], row[END_X], row[END_Y]
             part = line_sums(
                 one.along, one.turning, one.xx * px + one.xy * py, one.yx * px + one.yy * py,
                 one.xx * qx + one.xy * qy, one.yx * qx + one.yy * qy,
             )  # fmt: skip
-            sums = plus(sums, way, part)
-    fx, fy, xx, xy, yx, yy, gx, gy = from_slip(sums, ex, ey, way)
+            sums = plus(sums, sense, part)
+    fx, fy, xx, xy, yx, yy, gx, gy = from_slip(sums, ex, ey, sense)
     area = reach * reach / (p * q)
     third, fourth = area * reach * most, area * reach * reach * most
     sums = (

@@ -173,12 +173,12 @@ def _leave_out_blas() -> None:
     def no_blas() -> None:
         raise ImportError
 
-    found: Any = linalg.ensure_blas
+    ensure_blas: Any = linalg.ensure_blas
     linalg.ensure_blas = no_blas
     try:
         import numba.np.arraymath  # noqa: F401 - it asks as it is imported
     finally:
-        linalg.ensure_blas = found
+        linalg.ensure_blas = ensure_blas
 
 
 def read_sealed(path: Path) -> bytes | None:

@@ -108,8 +108,8 @@ def by_axes(axes: Ellipse, sums: Sums) -> Sums:
 @inlined
 def square_about(axes: Ellipse, nx: float, ny: float, side: float) -> Square:
     """In axes along the unit vector n and to its left, or to its right: ``side`` −1."""
-    near, beside = axes.cosine * nx + axes.sine * ny, axes.sine * nx - axes.cosine * ny
-    one, two = axes.along * beside, axes.across * near
-    three, four = axes.along * near, axes.across * beside
+    near, normal = axes.cosine * nx + axes.sine * ny, axes.sine * nx - axes.cosine * ny
+    one, two = axes.along * normal, axes.across * near
+    three, four = axes.along * near, axes.across * normal
     mixed = 2.0 * side * (two * four - one * three)
     return Square(one * one + two * two, mixed, three * three + four * four)

@@ -297,14 +297,14 @@ def _polynomials(law: FloatArray, u: FloatArray) -> FloatArray:
     piece = np.searchsorted(ends[1:-1], u, "right")
     t = (2.0 * u - ends[piece] - ends[piece + 1]) / (ends[piece + 1] - ends[piece])
     rows = law[2 + count :][: count * MOMENTS * (DEGREE + 1)].reshape(count, MOMENTS, DEGREE + 1)
-    rows, found = rows[piece], np.zeros((len(u), MOMENTS))
+    rows, values = rows[piece], np.zeros((len(u), MOMENTS))
     for power in range(DEGREE, -1, -1):
-        found = found * t[:, None] + rows[:, :, power]
-    return found
+        values = values * t[:, None] + rows[:, :, power]
+    return values
 
 
 def _points(row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, place: Nearest) -> Points:
-    arc, found = bool(row[TURN] != 0.0), [np.zeros((2, 0))]
+    arc, points = bool(row[TURN] != 0.0), [np.zeros((2, 0))]
     for side in (1.0, -1.0):
         branches = branches_of(place, axes, side, arc)
         for k in range(3 if arc else 2):
@@ -317,8 +317,8 @@ def _points(row: FloatArray, law: FloatArray, axes: Ellipse, spin: float, place:
                 ends.append(end)
             half = 0.5 * np.diff(ends)[:, None]
             turns = np.array(ends)[:-1, None] + half * (1.0 + NODE)
-            found.append(np.stack([side * turns.ravel(), (half * WEIGHT).ravel()]))
-    at, weight = np.concatenate(found, axis=1)
+            points.append(np.stack([side * turns.ravel(), (half * WEIGHT).ravel()]))
+    at, weight = np.concatenate(points, axis=1)
     off, size = place.off, place.size
     if arc:
         x, y, area = size * np.cos(at) - off, size * np.sin(at), size * (size - off * np.cos(at))

@@ -116,13 +116,13 @@ def _along(
 ) -> Sums:  # fmt: skip
     """A piece of the contour, about C; ``far``, a constant as ``arc``: about the centre of mass."""
     spin, sums, directed = abs(w), NOTHING, axes.along != axes.across
-    for way in range(2 if directed or far else 1):
-        side = 1.0 - 2.0 * way
+    for sense in range(2 if directed or far else 1):
+        side = 1.0 - 2.0 * sense
         branches = branches_of(place, axes, side, arc)
         for k in range(3 if arc else 2):
             begin, last, ahead, back = interval_of(k, place, arc)
             if directed or far:
-                ahead, back = (ahead, 0.0) if way == 0 else (0.0, back)
+                ahead, back = (ahead, 0.0) if sense == 0 else (0.0, back)
             if not begin < last or ahead + back == 0.0:
                 continue
             even, odd = ahead + back, ahead - back

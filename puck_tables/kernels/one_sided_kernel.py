@@ -29,9 +29,9 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import cosine_sine_of
 
 PARALLEL, PERPENDICULAR, SPIN, OFFSET, BEARING = range(5)
-FOUND = 5  # numbers of a balance
+BALANCE = 5  # numbers of a balance
 _STEPS, _MAX_TURN = 60, 0.3  # of Newton's method at most; rad of a step
-_SETTLED = 1e-7  # a step of that size leaves an error of its square
+_CONVERGED = 1e-7  # a step of that size leaves an error of its square
 _GAUSS_2 = 3.0**-0.5  # node of Gauss's rule of two points, exact up to degree 3
 _FRICTION_X, _FRICTION_Y, _BARE_X, _BARE_Y, _TURNED_X, _TURNED_Y, _FOOT, _TORQUE = range(8)
 _SUMS = 8  # the eight above
@@ -196,7 +196,7 @@ def _steady(
         space = 1.0 - offset
         chord[0] = 1.0 - min(max(space - step, 0.5 * space), 2.2 * space)
         chord[1] = bearing + min(max(turn, -_MAX_TURN), _MAX_TURN)
-        if abs(step) <= _SETTLED * space and abs(turn) <= _SETTLED:
+        if abs(step) <= _CONVERGED * space and abs(turn) <= _CONVERGED:
             return True
     return False
 

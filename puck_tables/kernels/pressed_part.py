@@ -36,7 +36,7 @@ from puck_tables.kernels.polygon_sums import (
 
 MOST_ROUNDS = 200  # near an edge each takes off a third of what is pressed
 # of the pressure: it does not move any more; below the other, less only if it is not rounding
-_SETTLED, _NEAR = 1e-13, 1e-3
+_CONVERGED, _NEAR = 1e-13, 1e-3
 # of how wide is what there is: pressed on less, a tall body tips, or one on feet; narrower,
 # rounding moves friction by more than 1e-10
 NARROWEST = 1e-3
@@ -128,7 +128,7 @@ def next_pressed(
         return Pressed(first, last, a, bx, by, 0.0)
     moved = abs(a - now.a) + reach * (abs(bx - now.bx) + abs(by - now.by))
     moved /= abs(a) + reach * (abs(bx) + abs(by))
-    if moved <= _SETTLED or (moved < _NEAR and moved >= now.moved):
+    if moved <= _CONVERGED or (moved < _NEAR and moved >= now.moved):
         return Pressed(now.first, now.last, a, bx, by, 0.0)
     until = beyond_line(
         room, first, last, to, bx / slope, by / slope, -a / slope, math.inf, math.inf

@@ -146,8 +146,8 @@ def section_slopes(
     c, s = (k, 1.0) if fast else (1.0, k)
     across = s * row[LINE_COS] - c * row[LINE_SIN]
     eta3, extent = eta * eta * eta, 1.0 / row[INVERSE_EXTENT]
-    stretch = 4.0 * extent * eta3 / (1.0 + extent * extent * eta3 * eta3 * eta * eta)  # dφ/dη
-    by_u = 3.0 * cells * c * s / ((c * c + s * s) * stretch)  # three: of the weights below
+    dphi_deta = 4.0 * extent * eta3 / (1.0 + extent * extent * eta3 * eta3 * eta * eta)  # dφ/dη
+    by_u = 3.0 * cells * c * s / ((c * c + s * s) * dphi_deta)  # three: of the weights below
     by_u = by_u if across > 0.0 or (across == 0.0 and 2 * (side // 2) != side) else -by_u
     w0, w1, w2, w3 = basis(place)
     t, r = place, 1.0 - place

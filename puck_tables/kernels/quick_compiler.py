@@ -23,18 +23,20 @@ _canonical: Any = canonicalize_cfg
 _options: Any = ConfigStack
 _find_type: Any = _Called.get_call_type
 _list_all: Any = _AfterStep.run
-_found: dict[Any, tuple[Any, Any]] = {}  # by function, types and options: signature, what lowers it
+_signatures: dict[
+    Any, tuple[Any, Any]
+] = {}  # by function, types and options: signature, what lowers it
 
 
 def _call_type(function: Any, context: Any, args: Any, named: Any) -> Any:
     """Which function of that name is called with such arguments; found once."""
     key = function, context, args, tuple(named.items()), _options.top_or_none()
-    if key in _found:
-        found, function._impl_keys[found.args] = _found[key]
+    if key in _signatures:
+        signature, function._impl_keys[signature.args] = _signatures[key]
     else:
-        found = _find_type(function, context, args, named)
-        _found[key] = found, function._impl_keys[found.args]
-    return found
+        signature = _find_type(function, context, args, named)
+        _signatures[key] = signature, function._impl_keys[signature.args]
+    return signature
 
 
 def _list_at_end(after: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:

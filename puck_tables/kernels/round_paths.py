@@ -140,8 +140,8 @@ def _fill_weights(
     piece, met = 0, 0
     for i in range(count):
         piece += 1 if room[i] < abs(begin) else 0
-        for way in range(2):
-            side = 1.0 if way == 0 else -1.0
+        for sense in range(2):
+            side = 1.0 if sense == 0 else -1.0
             place = side * room[i]
             if room[i] > 0.0 and (place - begin) * (place - end) < 0.0:
                 v = (place - first) / scale
@@ -236,11 +236,13 @@ def _interval(
     marks = base[room_of(base) + int(base[ROWS]) + _MARKS :]
     off = max(low - centre, centre - high, 0.0)
     cubed = math.sqrt(off * off + gap * gap) < _CLOSE * (high - low)
-    for way in range(2 if cubed else 1):  # up from the angle of C and down from it, if it is close
+    for sense in range(
+        2 if cubed else 1
+    ):  # up from the angle of C and down from it, if it is close
         first, begin, end, sign = low, 0.0, high - low, 1.0
         if cubed:
             first, begin, end = centre, low - centre, high - centre
-            if way == 1:
+            if sense == 1:
                 begin, end, sign = -end, -begin, -1.0
         if not end > 1e-12 * (high - low):
             continue

@@ -142,9 +142,9 @@ def _between_rays(
     xi, grade = (U - begin) / (end - begin), table[table.size - 1]
     if k == 0 and grade != 1.0:
         xi = xi ** (1.0 / grade)
-    way = across / max(U, _TINY)
-    near = math.sqrt(math.sqrt(max(way - low, 0.0)))
-    far = math.sqrt(math.sqrt(max(high - way, 0.0)))
+    ratio = across / max(U, _TINY)
+    near = math.sqrt(math.sqrt(max(ratio - low, 0.0)))
+    far = math.sqrt(math.sqrt(max(high - ratio, 0.0)))
     return k * (rays + 1) + sector, xi, near / (near + far)
 
 

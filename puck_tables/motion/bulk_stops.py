@@ -126,7 +126,7 @@ def fill_stops(
     patience(A_MOTION * launches.shape[1])
     by_table = columns.size > 0
     one_height = room_for_section(columns) if by_table else section
-    cut_delta = -1.0
+    row_delta = -1.0
     no_z, no_y = np.empty(0), np.empty((0, SIZE))
     start = np.empty(SIZE)
     result = np.empty(SIZE + 1)
@@ -146,9 +146,9 @@ def fill_stops(
             for i in range(6):
                 out[i, n] = math.nan
             continue
-        if by_table and delta != cut_delta:
+        if by_table and delta != row_delta:
             section_at(columns, delta, one_height)
-            cut_delta = delta
+            row_delta = delta
         if speed == 0.0 or rim == 0.0:
             for i in range(SIZE):
                 start[i] = 0.0

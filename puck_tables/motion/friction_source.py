@@ -79,7 +79,7 @@ def section_friction(body: UnitPuck, accuracy: float, coarser: bool = False) -> 
     True
     """
     try:
-        found = body.friction(accuracy)
+        friction = body.friction(accuracy)
     except AccuracyError as error:
         if error.reachable is None:
             raise
@@ -88,8 +88,8 @@ def section_friction(body: UnitPuck, accuracy: float, coarser: bool = False) -> 
             f"an error of {accuracy:.1g} of the friction is out of reach under the pressure law "
             f"{body.law.name}: give tol (--tol) of {finest:g} or more"
         ) from None
-    coefficients = found.for_motion(body.gyration, coarser)
-    return Friction(FrictionForm.SECTION, body.delta, coefficients, found.error)
+    coefficients = friction.for_motion(body.gyration, coarser)
+    return Friction(FrictionForm.SECTION, body.delta, coefficients, friction.error)
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ from puck_tables.table.singular_lines import opening_angle
 
 GENERIC = ("B", "C")  # regimes that are integrated; the others are elementary
 
-_FINEST_TWIN = 4e-15  # of a step: below, rounding is all that two runs differ by
+_FINEST_CHECK = 4e-15  # of a step: below, rounding is all that two runs differ by
 _STEP_LIMIT = 20_000  # room for so many is made; more is a motion that does not end
 _SAFETY = 1.5  # states between the moments compared
 _ROUNDING = 1e-14  # of a motion as long as Q/J
@@ -266,7 +266,7 @@ def _attempt(
     run = integrated(u, friction, stepping)
     coarser = source.coarser(setting.accuracy)
     if coarser is None:
-        finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_TWIN))
+        finer = integrated(u, friction, stepping.finer(2.0, 0.1, _FINEST_CHECK))
         difference = float(np.abs(run.stop[T : X + 2] - finer.stop[T : X + 2]).max())
         return run, ErrorEstimate(difference + 0.01 * tol, friction.error)
     finer = integrated(u, friction, stepping.finer(2.0, 0.01, FINEST_LOCAL))
@@ -289,8 +289,8 @@ def apart(one: MotionRun, other: MotionRun) -> float:
     """How far two motions of a launch are apart: at the stop, and at moments of the first."""
     speed, rim = _speeds((1.0 - one.z) ** 4, one.y[:, U])
     # where the speeds change most, errors of the time count most
-    way = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
-    at = 1 + np.unique(np.searchsorted(way, np.linspace(0.02, 0.98, _MOMENTS) * way[-1]))
+    varied = np.cumsum(np.abs(np.diff(speed)) + np.abs(np.diff(rim)))
+    at = 1 + np.unique(np.searchsorted(varied, np.linspace(0.02, 0.98, _MOMENTS) * varied[-1]))
     here, speed, rim = one.y[at], speed[at], rim[at]
     q_there, there = other.states(here[:, T])
     speed_there, rim_there = _speeds(q_there, there[:, U])

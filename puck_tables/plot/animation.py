@@ -377,7 +377,7 @@ def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[StraightPart]
     """The parts of walls and edges that are in sight and border the field."""
     left, right, low, high = box
     sides: list[Any] = [(1.0, 0.0, left), (-1.0, 0.0, -right), (0.0, 1.0, low), (0.0, -1.0, -high)]
-    found = []
+    lines = []
     for kind, plane in planes:
         nx, ny, at = plane
         start, end = -math.inf, math.inf
@@ -395,5 +395,5 @@ def _lines(planes: list[tuple[str, FloatArray]], box: Box) -> list[StraightPart]
         if start < end:
             ends = np.array([start, end])
             x, y = at * nx - ends * ny, at * ny + ends * nx
-            found.append(StraightPart(kind, (float(x[0]), float(x[1])), (float(y[0]), float(y[1]))))
-    return found
+            lines.append(StraightPart(kind, (float(x[0]), float(x[1])), (float(y[0]), float(y[1]))))
+    return lines

@@ -40,11 +40,11 @@ def draw(result: AsperityCurve) -> Figure:
 
 def draw_on(axes: Axes, result: AsperityCurve) -> None:
     """The greatest force alone."""
-    curves = {
+    series = {
         "held speed:\n−Y + m(a/b²)V² cos θ": result.greatest,
         "not driven:\nexact λ": result.undriven,
     }
-    _draw_force(axes, result, curves, "greatest force", 1.0)
+    _draw_force(axes, result, series, "greatest force", 1.0)
     axes.set_title("greatest force in contact (none where the point only hops)", fontsize=10)
 
 
@@ -62,10 +62,10 @@ def _draw_force(
 def _draw(axes: Axes, x: FloatArray, y: FloatArray, label: str, colour: str, leap: float) -> None:
     """A curve; where neighbours differ by more than ``leap`` dots: a line would be made up."""
     leaps = np.flatnonzero(np.abs(np.diff(y)) > leap)
-    beside = np.union1d(leaps, leaps + 1)
+    ends = np.union1d(leaps, leaps + 1)
     broken = np.insert(x, leaps + 1, np.nan), np.insert(y, leaps + 1, np.nan)
     axes.plot(*broken, color=colour, linewidth=1.8, label=label)
-    axes.plot(x[beside], y[beside], ".", color=colour, markersize=4)
+    axes.plot(x[ends], y[ends], ".", color=colour, markersize=4)
 
 
 def _for_reference(axes: Axes, x: FloatArray, y: FloatArray, label: str) -> None:

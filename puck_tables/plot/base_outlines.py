@@ -69,16 +69,18 @@ def draw_along(
 
     outline, radius = outline_of(puck), scale * puck.radius
     mark = radius * (1.0 if puck.shape is None else MARK)
-    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
-    count = min(most, max(2, int(way[-1] / (2.2 * radius or 1.0)) + 1))
-    chosen = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], count)).clip(0, x.size - 1))
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    count = min(most, max(2, int(length[-1] / (2.2 * radius or 1.0)) + 1))
+    chosen = np.unique(
+        np.searchsorted(length, np.linspace(0.0, length[-1], count)).clip(0, x.size - 1)
+    )
     for n in chosen:
         there = path_of(placed(outline, x[n], y[n], angle[n], scale))
         axes.add_patch(PathPatch(there, fill=False, color=GREY, linewidth=0.8, zorder=2))
         dx, dy = mark * math.cos(angle[n]), mark * math.sin(angle[n])
         axes.plot([x[n], x[n] + dx], [y[n], y[n] + dy], color=colour, linewidth=0.9, zorder=2)
-    found: list[int] = chosen.tolist()
-    return found
+    frames: list[int] = chosen.tolist()
+    return frames
 
 
 def _circle(x: float, y: float, radius: float, sign: float) -> FloatArray:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _WIDE, _HIGH = 9.0, 7.0  # in, of a panel at most
 _LOW = 1.2  # in, at least
 LEGEND_ROW = 6  # entries
-_BESIDE, _UNDER = 0.85, 0.6  # in, for the labels of axes
+_LEFT, _UNDER = 0.85, 0.6  # in, for the labels of axes
 _TITLE, _NOTE = 0.3, 0.2  # in, a line of the title, of a note above a panel
 _NARROW = 6.5  # in, at least: for the legend
 _SMALL = 0.012  # of the panel's width: smaller pucks are shown in a close-up as well
@@ -50,13 +50,13 @@ def draw_board(axes: Axes, film: Animation) -> None:
     draw_floor(axes, film.floor, film.box, max(film.frictions, default=0.0))
     draw_painted(axes, film.painted)
     draw_rounds(axes, film.rounds)
-    told: set[str] = set()
+    labels: set[str] = set()
     for line in film.lines:
         looks: dict[str, Any] = {"color": "black", "linewidth": 2.5, "solid_capstyle": "projecting"}
         if line.kind == "edge":
             looks = {"color": RED, "linewidth": 1.2, "linestyle": "--"}
-        looks |= {} if line.kind in told else {"label": line.kind}
-        told.add(line.kind)
+        looks |= {} if line.kind in labels else {"label": line.kind}
+        labels.add(line.kind)
         axes.plot(line.x, line.y, zorder=1, **looks)
 
 
@@ -119,7 +119,7 @@ def close_up(box: Box, places: FloatArray, radius: float) -> list[Box]:
 def panels_for(boxes: list[Box]) -> tuple[Figure, list[Axes]]:
     """A figure with a panel for each box."""
     heights = [size_of(box)[1] for box in boxes]
-    figure = canvas(max(*(size_of(box)[0] + _BESIDE for box in boxes), _NARROW), _NARROW)
+    figure = canvas(max(*(size_of(box)[0] + _LEFT for box in boxes), _NARROW), _NARROW)
     panels = figure.subplots(len(boxes), 1, squeeze=False, height_ratios=heights)[:, 0]
     return figure, list(panels)
 

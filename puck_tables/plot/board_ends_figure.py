@@ -60,8 +60,8 @@ def draw_on(axes: Axes, ends: SceneEnds) -> None:
 def _board(ends: SceneEnds) -> Animation:
     ended = np.flatnonzero(ends.end.ravel() <= LAST_END)
     if not ended.size:
-        told = ends.told or ("no run has an end",)
-        raise InputError(f"there is nothing to draw: {'; '.join(told)}")
+        remarks = ends.endless or ("no run has an end",)
+        raise InputError(f"there is nothing to draw: {'; '.join(remarks)}")
     return film_of(simulate(ends.scene.at(ends.numbers(int(ended[0])))))
 
 

@@ -60,11 +60,11 @@ def draw_rounds(axes: Axes, rounds: list[RoundPart]) -> None:
     """All of them to scale, each kind labelled once."""
     from matplotlib.patches import Arc, Circle
 
-    told: set[str] = set()
+    labels: set[str] = set()
     for one in rounds:
         centre = one.x, one.y
-        label: dict[str, Any] = {} if one.kind in told else {"label": one.kind}
-        told.add(one.kind)
+        label: dict[str, Any] = {} if one.kind in labels else {"label": one.kind}
+        labels.add(one.kind)
         if one.kind == "arc":
             ends = np.degrees([one.start, one.start + one.span])
             whole = one.span >= 2.0 * math.pi
@@ -97,17 +97,17 @@ def painted_on(scene: SceneSpec) -> list[Painted]:
     >>> painted_on(Scene(Puck(0.1), lines=[Line((0.0, 0.0), (0.0, 2.0))]))[0].y
     (0.0, 2.0)
     """
-    found, turn = [], np.linspace(0.0, 2.0 * math.pi, _ROUND)
+    lines, turn = [], np.linspace(0.0, 2.0 * math.pi, _ROUND)
     for line in scene.lines:
         colour = line.colour or GREY
         if line.start is None or line.end is None:
             x = line.centre[0] + line.radius * np.cos(turn)
             y = line.centre[1] + line.radius * np.sin(turn)
-            found.append(Painted(colour, tuple(x.tolist()), tuple(y.tolist())))
+            lines.append(Painted(colour, tuple(x.tolist()), tuple(y.tolist())))
         else:
             x0, x1 = zip(line.start, line.end, strict=True)
-            found.append(Painted(colour, x0, x1))
-    return found
+            lines.append(Painted(colour, x0, x1))
+    return lines
 
 
 def draw_painted(axes: Axes, lines: list[Painted], zorder: float = 0.9) -> None:

@@ -29,7 +29,7 @@ _STYLE = (
     "text-align:right}td:first-child,th:first-child,.case td{text-align:left}"
     "svg{max-width:100%;height:auto}"
 )
-_CURVE = 600  # points of a curve: smooth at any size of print
+_POINTS = 600  # points of a curve: smooth at any size of print
 _LABELLED = 8  # curves: a legend of more hides the picture
 _EXACT: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 
@@ -88,7 +88,7 @@ def _colours(result: Comparison) -> list[tuple[float, float, float] | str]:
 
 
 def _exact(result: Comparison) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    times = np.linspace(0.0, result.end_time, _CURVE)
+    times = np.linspace(0.0, result.end_time, _POINTS)
     return times, result.answer(times).states_of(result.puck)
 
 

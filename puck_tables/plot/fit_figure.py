@@ -46,12 +46,12 @@ def draw(result: Fit) -> Figure:
             _draw_friction(figure.add_subplot(inner[0, len(shown)]), result)
         for n, name in enumerate(shown):
             _draw_profile(figure.add_subplot(inner[0, n]), result, name)
-    told = [f"{name} = {result.numbers[name].written.replace('+-', '±')}" for name in names]
-    told += [f"{name} is not determined" for name in free if name not in names]
+    lines = [f"{name} = {result.numbers[name].written.replace('+-', '±')}" for name in names]
+    lines += [f"{name} is not determined" for name in free if name not in names]
     titled(
         figure,
         "; ".join(
-            [*told, f"chi² per degree of freedom {result.chi2 / max(result.degrees, 1):.3g}"]
+            [*lines, f"chi² per degree of freedom {result.chi2 / max(result.degrees, 1):.3g}"]
         ),
     )
     return figure
@@ -61,12 +61,12 @@ def draw_on(paths: Axes, result: Fit) -> None:
     """The paths alone."""
     problem, x = result.estimate.problem, result.estimate.x
     moving, (slides, hits) = problem.moving(problem.numbers_at(x)), problem.slides(x)
-    whole, told = {film.name: film for film in result.uncut}, set[str]()
+    whole, labels = {film.name: film for film in result.uncut}, set[str]()
 
     def once(words: str) -> str | None:
         """A label, if nothing bears it yet."""
-        new = words not in told
-        told.add(words)
+        new = words not in labels
+        labels.add(words)
         return words if new else None
 
     for n, (film, track) in enumerate(zip(problem.films, slides, strict=True)):
@@ -94,9 +94,9 @@ def draw_on(paths: Axes, result: Fit) -> None:
             fine = np.linspace(0.0, max(stop - start, 0.0), _FINE)
             paths.plot(*states_of(moving, slide.launch, fine)[:2], color=colour, linewidth=0.8)
         paths.plot(*track[0].launch[:2], **LAUNCH)
-    for hit in hits:
+    for impact in hits:
         paths.plot(
-            *hit.place, "o", color=GREY, markersize=7, fillstyle="none", label=once("impact")
+            *impact.place, "o", color=GREY, markersize=7, fillstyle="none", label=once("impact")
         )
     films = "" if len(problem.films) <= len(COLORS) else f" of {len(problem.films)} films"
     title = f"seen (rings) and found (lines){films}"

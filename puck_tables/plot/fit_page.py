@@ -86,10 +86,10 @@ def _speeds(result: Fit) -> Figure:
         colour = COLORS[n % len(COLORS)]
         since, step = film.start + film.time, np.diff(film.time)
         middle = 0.5 * (since[1:] + since[:-1])
-        seen, found = (np.hypot(*np.diff(places)) / step for places in (film.place.T, path[:2]))
+        seen, computed = (np.hypot(*np.diff(places)) / step for places in (film.place.T, path[:2]))
         axes.plot(middle, seen, "o", color=colour, markersize=3, fillstyle="none",
                   markeredgewidth=0.6)  # fmt: skip
-        axes.plot(middle, found, color=colour if n else BLUE, linewidth=1.5)
+        axes.plot(middle, computed, color=colour if n else BLUE, linewidth=1.5)
     axes.set(xlabel="time / s", ylabel="speed / (m/s)", ylim=(0.0, None))
     return figure
 

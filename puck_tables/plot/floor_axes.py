@@ -47,11 +47,11 @@ def draw_floor(axes: Axes, floor: Floor, box: Box, highest: float) -> None:
     """All of it that is seen in a box; ``highest``: the largest friction, the darkest patch."""
     from matplotlib.patches import Circle, Polygon
 
-    told: set[tuple[bool, str]] = set()
+    labels: set[tuple[bool, str]] = set()
     for shade in shades_of(floor, box, highest):
         key = (shade.patch, shade.said)
-        label: dict[str, Any] = {} if key in told else {"label": shade.said}
-        told.add(key)
+        label: dict[str, Any] = {} if key in labels else {"label": shade.said}
+        labels.add(key)
         style: dict[str, Any] = {
             "facecolor": shade.colour, "edgecolor": GREY, "linewidth": 0.8,
             "zorder": 1 if shade.patch else 0, **label,
@@ -74,12 +74,12 @@ def shades_of(floor: Floor, box: Box, highest: float) -> list[Shade]:
     """
     shades = _strips(floor, box)
     frictions = frictions_on(floor, 0.0)[-len(floor.patches) :] if floor.patches else []
-    for patch, given in zip(floor.patches, frictions, strict=True):
-        friction = largest_of(given, 0.0)
+    for patch, own in zip(floor.patches, frictions, strict=True):
+        friction = largest_of(own, 0.0)
         share = friction / (highest or 1.0)
         colour = (0.86 - 0.5 * share, 0.93 - 0.4 * share, 0.98 - 0.25 * share)
         corners: Any = list(map(tuple, corners_of(patch).tolist()))
-        said = _said(given)
+        said = _said(own)
         shades.append(Shade(friction, corners, patch.centre, patch.radius, colour, True, said))
     return shades
 
@@ -104,10 +104,10 @@ def _strips(floor: Floor, box: Box) -> list[Shade]:
     centre = across[0] * middle[0] + across[1] * middle[1]
     along = across[0] * middle[1] - across[1] * middle[0]
     ends = [centre - half, *strips.borders, centre + half]
-    given = frictions_on(floor, 0.0)[: len(strips.friction)]
-    at_rest = [largest_of(one, 0.0) for one in given]
+    frictions = frictions_on(floor, 0.0)[: len(strips.friction)]
+    at_rest = [largest_of(one, 0.0) for one in frictions]
     highest, result = max(at_rest) or 1.0, []
-    for low, high, friction, one in zip(ends, ends[1:], at_rest, given, strict=False):
+    for low, high, friction, one in zip(ends, ends[1:], at_rest, frictions, strict=False):
         low, high = max(low, centre - half), min(high, centre + half)
         if low >= high:
             continue

@@ -53,14 +53,14 @@ def draw_on(axes: Axes, surface: LimitSurface) -> None:
     torque = slip_length(surface.puck) * np.sin(turn)
     for name, style in _STYLES.items():
         axes.plot([], [], linestyle=style, color=GREY, label=name)
-    for way, color in ((0, COLORS[0]), (1, COLORS[2])):
+    for axis, color in ((0, COLORS[0]), (1, COLORS[2])):
         force = np.zeros((turn.size, 2))
-        force[:, way] = np.cos(turn)
-        label = "" if surface.heading is None else f"force along {'xy'[way]}"
+        force[:, axis] = np.cos(turn)
+        label = "" if surface.heading is None else f"force along {'xy'[axis]}"
         for n, style in enumerate(_STYLES.values()):
             size = _size(surface, force, torque, n)
             axes.plot(
-                size * force[:, way], size * torque, linestyle=style, color=color,
+                size * force[:, axis], size * torque, linestyle=style, color=color,
                 label="" if n else label,
             )  # fmt: skip
         if surface.heading is None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_CURVE = 400  # points of a curve
+_POINTS = 400  # points of a curve
 _DOTS = 200  # states asked for: more would be one line
 
 
@@ -36,7 +36,7 @@ def draw(answer: Answer) -> Figure:
     grid = figure.add_gridspec(3, 2, height_ratios=(1.25, 1.0, 1.0))
     draw_on(figure.add_subplot(grid[0, :]), answer)
     panels = [figure.add_subplot(grid[n]) for n in ((1, 0), (1, 1), (2, 0), (2, 1))]
-    whole = answer(np.linspace(0.0, answer.end_time, _CURVE))
+    whole = answer(np.linspace(0.0, answer.end_time, _POINTS))
     _draw_path(panels[0], answer, whole)
     radii = [puck.radius for puck in answer.pucks]
     for n, (radius, style) in enumerate(zip(radii, ("-", "--", ":") * len(radii), strict=False)):

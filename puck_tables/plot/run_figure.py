@@ -106,8 +106,8 @@ def _draw_constraint(axes: Axes, scene: SceneSpec, end_time: float) -> None:
         return
     bearing = scene.launch.orientation + hold.angle
     at = (start[0] + hold.reach * math.cos(bearing), start[1] + hold.reach * math.sin(bearing))
-    way = [at, tuple(p + v * end_time for p, v in zip(at, hold.velocity, strict=True))]
-    axes.plot(*zip(*way, strict=True), color=_PURPLE, linewidth=1.2, linestyle="-.", zorder=2)
+    ends = [at, tuple(p + v * end_time for p, v in zip(at, hold.velocity, strict=True))]
+    axes.plot(*zip(*ends, strict=True), color=_PURPLE, linewidth=1.2, linestyle="-.", zorder=2)
     axes.plot(*at, "P", color=_PURPLE, markersize=8, zorder=5, linestyle="", label=words)
 
 

@@ -69,16 +69,16 @@ def draw(stops: Map) -> Figure:
             _mark_ends(panel, axes, values, end)
         else:
             _hatch(panel, axes, end)
-    curves, words = panels.flat[0].get_legend_handles_labels()
+    handles, words = panels.flat[0].get_legend_handles_labels()
     _draw_ends(panels.flat[_PANELS], axes, labels, end)
     for code in np.unique(end).tolist():
         color, marker = _LOOKS[code]
-        curves.append(Line2D([], [], color=color, marker=marker, linestyle=""))
+        handles.append(Line2D([], [], color=color, marker=marker, linestyle=""))
         words.append(ENDS[code])
     if not panels.flat[0].lines and (end > CARRIED_ROUND).any():
-        curves.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
+        handles.append(Patch(facecolor="white", edgecolor="black", hatch=_HATCH))
         words.append("not at rest at the end")
-    legend_below(figure, _LEGEND_ROW, shown=(curves, words))
+    legend_below(figure, _LEGEND_ROW, shown=(handles, words))
     titled(figure, stops.title + (f" at {at}" if at else ""))
     return figure
 

@@ -55,9 +55,9 @@ def draw_on(axes: Axes, measured: TradeOff, question: str = "stop") -> None:
 
 
 def _draw(axes: Axes, title: str, group: list[MeasuredMethod]) -> None:
-    front = pareto(one for one in group if not one.outsider)
+    best = pareto(one for one in group if not one.outsider)
     axes.plot(
-        [_error(one) for one in front], [one.ns for one in front],
+        [_error(one) for one in best], [one.ns for one in best],
         color="#d5d5d5", linewidth=9.0, solid_capstyle="round", zorder=1, label="the front",
     )  # fmt: skip
     axes.set_xscale("log")
@@ -95,8 +95,8 @@ def _name(
 
     width, height = 5.4 * len(method), 11.0
     ends = sorted(own, key=_error)
-    beside = [(ends[-1], -width - 8.0, -3.0), (ends[0], 8.0, -3.0)]
-    spots = beside + [
+    places = [(ends[-1], -width - 8.0, -3.0), (ends[0], 8.0, -3.0)]
+    spots = places + [
         (one, dx, dy)
         for dy in (7.0, 19.0, -24.0, 31.0, -36.0, 43.0)
         for one in (ends[-1], ends[0], ends[len(ends) // 2])

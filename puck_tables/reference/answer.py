@@ -78,16 +78,16 @@ class Answer(Result):
         ordered, back = np.unique(wanted, return_inverse=True)
         stays = self.run.end == "carried by the floor"
         run = self.run(np.minimum(ordered, self.end_time) if stays else ordered)
-        found = {name: np.asarray(run.columns[name])[back] for name in STATE}
+        states = {name: np.asarray(run.columns[name])[back] for name in STATE}
         if self.run.end == "at rest" and not self.names:  # no rounding is left of the slip
             last = self.run.last
             rests = wanted >= self.end_time
-            found = {name: np.where(rests, last[name], row) for name, row in found.items()}
+            states = {name: np.where(rests, last[name], row) for name, row in states.items()}
         if stays:  # at rest on a belt it goes on with it
             belt = self.run.scene.floor.velocity
             more = np.maximum(wanted - self.end_time, 0.0)
-            found["x"], found["y"] = found["x"] + belt[0] * more, found["y"] + belt[1] * more
-        return replace(self, run=run, time=wanted, columns=found)
+            states["x"], states["y"] = states["x"] + belt[0] * more, states["y"] + belt[1] * more
+        return replace(self, run=run, time=wanted, columns=states)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -237,8 +237,8 @@ class Answer(Result):
             return columns[name]
         if name in ON_FLOOR:
             return self._on_floor()[name]
-        found: FloatArray = following(self, name)
-        return found
+        values: FloatArray = following(self, name)
+        return values
 
     def _on_floor(self) -> dict[str, FloatArray]:
         """Slip and forces, of every puck."""

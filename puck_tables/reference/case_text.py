@@ -26,15 +26,15 @@ def lines_of(answer: Answer) -> dict[str, str]:
     for n, (puck, name) in enumerate(zip(answer.pucks, answer.names or ("puck",), strict=True)):
         lines[name] = _puck(puck)
         if answer.names:
-            given = case.tables["puck"][n]
-            rim = {one: given[one] for one in _RIM if one in given}
-            lines[name] += "".join(f", {told}" for told in _entries(rim, units, "puck."))
+            entry = case.tables["puck"][n]
+            rim = {one: entry[one] for one in _RIM if one in entry}
+            lines[name] += "".join(f", {text}" for text in _entries(rim, units, "puck."))
         lines["launch" if n == 0 else f"launch {n + 1}"] = _launch(puck.launch)
     for what in ("floor", "force", "wall"):
         parts = case.tables.get(what, {})
         for n, part in enumerate(parts if isinstance(parts, list) else [parts] if parts else []):
-            told = ", ".join(_entries(part, units, f"{what}."))
-            lines[what if n == 0 else f"{what} {n + 1}"] = told
+            text = ", ".join(_entries(part, units, f"{what}."))
+            lines[what if n == 0 else f"{what} {n + 1}"] = text
     lines["end"] = f"{answer.end} after {answer.end_time:.12g} s"
     last = answer.last()
     if not answer.names:
@@ -54,34 +54,34 @@ def lines_of(answer: Answer) -> dict[str, str]:
 def _puck(puck: PuckSpec) -> str:
     """Its numbers; of pressure and gyration those that are not the usual ones."""
     size = f"r = {_digits(puck.radius)} m" if puck.shape is None else f"base {puck.base}"
-    told = (
+    text = (
         f"{size}, height {_digits(puck.height)} m (centre of mass at "
         f"{_digits(0.5 * puck.height)} m), f = {_digits(puck.friction)}, "
         f"g = {_digits(puck.gravity)} m/s^2, m = {_digits(puck.mass)} kg"
     )
     if puck.shape is not None:
-        return f"{told}, gyration {_digits(puck.gyration)} m"
-    told += f", delta = {puck.delta:.6g}"
+        return f"{text}, gyration {_digits(puck.gyration)} m"
+    text += f", delta = {puck.delta:.6g}"
     usual = PuckSpec(puck.radius)
     if puck.pressure != usual.pressure:
-        told += f", pressure {puck.body.law.name}"
+        text += f", pressure {puck.body.law.name}"
     if puck.gyration != usual.gyration:
-        told += f", gyration {_digits(puck.gyration)} r"
-    return told
+        text += f", gyration {_digits(puck.gyration)} r"
+    return text
 
 
 def _launch(launch: Launch) -> str:
     vx, vy = launch.velocity or (0.0, 0.0)
-    told = f"v = {_pair(vx, vy)} m/s, w = {_digits(launch.spin)} rad/s"
+    text = f"v = {_pair(vx, vy)} m/s, w = {_digits(launch.spin)} rad/s"
     turned = f", turned by {_digits(launch.orientation)} rad" if launch.orientation else ""
-    return f"{told} at {_pair(*launch.position)} m{turned}"
+    return f"{text} at {_pair(*launch.position)} m{turned}"
 
 
 def _entries(part: Mapping[str, Any], units: Mapping[str, str], path: str) -> Iterator[str]:
     """The entries of a table of a scene, as --set would take them, in SI units."""
     for name, value in part.items():
         if isinstance(value, dict):
-            yield from (f"{name}.{told}" for told in _entries(value, units, f"{path}{name}."))
+            yield from (f"{name}.{text}" for text in _entries(value, units, f"{path}{name}."))
         else:
             unit = units.get(path + name, "1")
             yield f"{name} = {_digits(value)}" + (f" {unit}" if unit != "1" else "")

@@ -112,15 +112,15 @@ class Comparison(Result):
     def truths(self) -> list[str]:
         """What is no error of an engine though it differs from a number of the literature."""
         answer, exact = self.answer, self.exact_rest
-        told = []
+        lines = []
         if exact is not None:
             met = ", ".join(map(str, self.thresholds))
-            told.append(
+            lines.append(
                 f"the threshold {met} is met {self.end_time - exact.time:.4g} s before the exact "
                 "stop: a stop read there is early by that, in truth"
             )
         if exact is not None and self.transient is not None:
-            told.append(
+            lines.append(
                 f"v/(r w) is {exact.epsilon:.6g} there, {self.transient:+.3g} off its limit "
                 f"{answer.limit_epsilon:.6g}: the limit is reached at the stop alone, so this is "
                 "truth and not error"
@@ -128,31 +128,31 @@ class Comparison(Result):
         for run in self.runs:
             read = run.exact_rest
             if exact is not None and read is not None and _differ(read.epsilon, exact.epsilon):
-                told.append(
+                lines.append(
                     f"in rows {run.log.step:.4g} s apart ({run.log.name}) the exact motion itself "
                     f"would show v/(r w) = {read.epsilon:.6g} at the threshold: only what differs "
                     "from that is counted as error"
                 )
         puck = answer.puck_at_end
         if answer.limit_epsilon is not None and puck is not None and puck.delta > 0.0:
-            told.append(
+            lines.append(
                 f"the limit {answer.limit_epsilon:.6g} is that of this puck with delta = "
                 f"{puck.delta:.4g} where it stops; 0.653 is that of a flat homogeneous disc"
             )
         if answer.end == "carried by the floor":
-            told.append("at rest on the floor the puck is carried on by it: it has no stop place")
+            lines.append("at rest on the floor the puck is carried on by it: it has no stop place")
         if answer.end == "time is up":
-            told.append("the motion of this case does not stop while it is followed")
-        return told
+            lines.append("the motion of this case does not stop while it is followed")
+        return lines
 
     def remarks(self) -> dict[str, list[str]]:
         """What is said of the runs besides their numbers, by headings."""
         fallen = [f"{words}: {what}" for words, what in self.convergence().items()]
-        found = {
+        worst = {
             "not told": self.untold(), "as the step falls": fallen,
             "truth and not error": self.truths(),
         }  # fmt: skip
-        return {head: texts for head, texts in found.items() if texts}
+        return {head: texts for head, texts in worst.items() if texts}
 
     def __repr__(self) -> str:
         count = len(self.runs)
@@ -196,12 +196,14 @@ class Comparison(Result):
         }
         for name in rows[0]:
             columns[name] = variable(name, np.array([row[name] for row in rows]), ("run",))
-        told = self.summary()
-        kept = {name: told[name] for name in ("case", "version", "end", "end_time", "thresholds")}
+        summary = self.summary()
+        kept = {
+            name: summary[name] for name in ("case", "version", "end", "end_time", "thresholds")
+        }
         if self.puck is not None:
-            kept["puck"] = told["puck"]
+            kept["puck"] = summary["puck"]
         if self.transient is not None:
-            kept |= {"limit_epsilon": told["limit_epsilon"], "transient_epsilon": self.transient}
+            kept |= {"limit_epsilon": summary["limit_epsilon"], "transient_epsilon": self.transient}
         axes = {"run": variable("run", np.arange(len(rows)), ("run",))}
         return Dataset(axes, columns, kept)
 
@@ -261,14 +263,14 @@ def compare(
     answer = reference_case(case, times=[0.0])
     number = answer.puck_number(puck)
     how = LogHow(columns, unit, angle_unit, up, puck, launch_time, number)
-    given = tuple(threshold_of(one) for one in thresholds) or (usual(answer),)
+    limits = tuple(threshold_of(one) for one in thresholds) or (usual(answer),)
     sizes: list[float | None] = [None] * len(paths)
     if steps is not None:
         if len(steps) != len(paths):
             raise InputError(f"steps are {len(steps)} and files {len(paths)}: give one for each")
         sizes = [positive("steps", one, "s") for one in steps]
     runs = [
-        measured(read_log(path, how), answer, number, given, size)
+        measured(read_log(path, how), answer, number, limits, size)
         for path, size in zip(paths, sizes, strict=True)
     ]
     runs.sort(key=lambda one: -one.step)
@@ -277,7 +279,7 @@ def compare(
             "two files have the same step: say the steps of the engine with steps (--steps), or "
             "compare them one by one"
         )
-    return Comparison(answer, number, tuple(runs), given, exact_rest(answer, number, given))
+    return Comparison(answer, number, tuple(runs), limits, exact_rest(answer, number, limits))
 
 
 def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
@@ -289,11 +291,11 @@ def orders(steps: Sequence[float], errors: Sequence[float]) -> list[float]:
     [2.0, 2.0]
     """
     ordered = sorted(zip(steps, errors, strict=True), reverse=True)
-    found = []
+    result = []
     for (h1, e1), (h2, e2) in pairwise(ordered):
         known = all(math.isfinite(e) and e != 0.0 for e in (e1, e2))
-        found.append(math.log(abs(e1 / e2)) / math.log(h1 / h2) if known else math.nan)
-    return found
+        result.append(math.log(abs(e1 / e2)) / math.log(h1 / h2) if known else math.nan)
+    return result
 
 
 def verdict(steps: Sequence[float], errors: Sequence[float]) -> str:
@@ -302,15 +304,15 @@ def verdict(steps: Sequence[float], errors: Sequence[float]) -> str:
     >>> verdict([0.1, 0.05], [4.0, 1.0]), verdict([0.1, 0.05], [1.0, 1.0])
     ('order 2.00', 'does not fall with the step (order 0.00): it is of the model, not of the step')
     """
-    found = orders(steps, errors)
-    if not found or not math.isfinite(found[-1]):
+    order = orders(steps, errors)
+    if not order or not math.isfinite(order[-1]):
         return "not known"
-    if found[-1] < FALLS:
+    if order[-1] < FALLS:
         return (
-            f"does not fall with the step (order {found[-1]:.2f}): it is of the model, not of the "
+            f"does not fall with the step (order {order[-1]:.2f}): it is of the model, not of the "
             "step"
         )
-    told = ", ".join(f"{one:.2f}" for one in found)
-    if max(found) - min(found) > _EVEN:
-        return f"falls unevenly (orders {told}): no order can be told"
-    return f"order {told}"
+    numbers = ", ".join(f"{one:.2f}" for one in order)
+    if max(order) - min(order) > _EVEN:
+        return f"falls unevenly (orders {numbers}): no order can be told"
+    return f"order {numbers}"

@@ -90,8 +90,8 @@ def _velocity_under(floor: Floor, states: Mapping[str, FloatArray]) -> FloatArra
         return moves
     east, north = math.cos(floor.strips.direction), math.sin(floor.strips.direction)
     place = east * states["x"] + north * states["y"]
-    found = belts_of(floor)[np.searchsorted(floor.strips.borders, place, "right")]
-    return np.stack([found[:, 0], found[:, 1], moves[2]])
+    belts = belts_of(floor)[np.searchsorted(floor.strips.borders, place, "right")]
+    return np.stack([belts[:, 0], belts[:, 1], moves[2]])
 
 
 def ratios(slip: SlipVelocity, radius: float) -> tuple[FloatArray, FloatArray]:
@@ -163,16 +163,16 @@ def on_the_floor(
     slides = slip.sizes(puck.radius)[2] > least
     fx, fy, torque = _passed_on(puck, scene, states)
     if is_one_friction(floor) and puck.shape is None:
-        found = _by_ratios(puck, slip, floor.slope)
+        wrench = _by_ratios(puck, slip, floor.slope)
     else:
         angle = states.get("orientation", np.zeros_like(states["x"]))
         place = [states["x"], states["y"], angle]
         on_puck = friction_at(scene, np.stack([*place, *slip], axis=-1))
-        found = -on_puck[:, 0], -on_puck[:, 1], -on_puck[:, 2]
+        wrench = -on_puck[:, 0], -on_puck[:, 1], -on_puck[:, 2]
     return (
-        np.where(slides, found[0], fx),
-        np.where(slides, found[1], fy),
-        np.where(slides, found[2], torque),
+        np.where(slides, wrench[0], fx),
+        np.where(slides, wrench[1], fy),
+        np.where(slides, wrench[2], torque),
     )
 
 
@@ -186,16 +186,16 @@ def _passed_on(
     ax = ax - turn * dy - moves[2] ** 2 * dx - moves[2] * moves[1]
     ay = ay + turn * dx - moves[2] ** 2 * dy + moves[2] * moves[0]
     down = puck.gravity * math.sin(floor.slope)
-    given = np.array([*force.constant, force.torque])[:, None]
+    wrench = np.array([*force.constant, force.torque])[:, None]
     if force.over_time:
         rows = drive_of(force.over_time)
-        given = given + np.stack(
+        wrench = wrench + np.stack(
             [np.interp(states["time"], rows[:, 0], one, 0.0, 0.0) for one in rows[:, 1:].T]
         )
     return (
-        given[0] + puck.mass * (down * math.cos(floor.downhill) - ax),
-        given[1] + puck.mass * (down * math.sin(floor.downhill) - ay),
-        given[2] - puck.mass * puck.inertia_radius**2 * turn,
+        wrench[0] + puck.mass * (down * math.cos(floor.downhill) - ax),
+        wrench[1] + puck.mass * (down * math.sin(floor.downhill) - ay),
+        wrench[2] - puck.mass * puck.inertia_radius**2 * turn,
     )
 
 

@@ -57,12 +57,12 @@ class LogHow:
         if self.up is not None and self.up not in UP:
             raise InputError(f"up must be y or z, the axis that points up, got {self.up!r:.20}")
         for name, kind in (("unit", "length"), ("angle_unit", "angle")):
-            given = getattr(self, name)
-            if given is not None and unit_size(given, kind) is None:
+            value = getattr(self, name)
+            if value is not None and unit_size(value, kind) is None:
                 known = (
                     "m, dm, cm, mm, um, km, in, ft, yd" if kind == "length" else "rad, deg, turn"
                 )
-                raise InputError(f"{name} = {given!r:.40} is not known: one of {known}")
+                raise InputError(f"{name} = {value!r:.40} is not known: one of {known}")
 
     def size(self, kind: str) -> float | None:
         """The unit that it says for a kind, in SI units."""
@@ -138,18 +138,18 @@ def read_log(path: str | Path, how: LogHow) -> Log:
             f"{where} has {counted(time.size, 'row')} of numbers: at least three are compared"
         )
     signs = {"y": -1.0, "vy": -1.0} if how.up == "y" else {}
-    found = {
+    series = {
         name: signs.get(name, 1.0) * values[said[role]]
         for name, role in floor.items() if role in said
     }  # fmt: skip
-    angle = found.get("angle")
+    angle = series.get("angle")
     if all(role in said for role in _QUATERNION):
         four = np.column_stack([values[said[role]] for role in _QUATERNION])
         angle = turned(where, four, 1 if how.up == "y" else 2)
         notes.append("angles from quaternions")
     return Log(
-        Path(path).name, time, found["x"], found["y"], angle, found.get("vx"), found.get("vy"),
-        found.get("spin"), float(np.median(np.diff(time))), tuple(notes),
+        Path(path).name, time, series["x"], series["y"], angle, series.get("vx"), series.get("vy"),
+        series.get("spin"), float(np.median(np.diff(time))), tuple(notes),
     )  # fmt: skip
 
 
@@ -164,9 +164,9 @@ def times_in(path: str | Path) -> FloatArray:
     ...     times_in(Path(folder, "a.txt")).tolist()
     [0.0, 0.1]
     """
-    found = list_of(path, TIME, _MOST_TIMES)
-    if found is not None:
-        return found
+    times = list_of(path, TIME, _MOST_TIMES)
+    if times is not None:
+        return times
     form, columns, _ = _columns(path, LogHow())
     clock = next((n for n, one in columns.items() if one.role == "time"), None)
     if clock is None:
@@ -279,7 +279,7 @@ def _numbers(
     where = str(path) if rows is None else f"{path} ({how.puck})"
     if rows is not None:
         values = {n: column[rows] for n, column in values.items()}
-    found = {}
+    numbers = {}
     for n in wanted:
         one = columns[n]
         gaps = np.flatnonzero(~np.isfinite(values[n]))
@@ -301,8 +301,8 @@ def _numbers(
                     f"{path} does not say the unit of its column {one.role}: write it in the "
                     f"header, such as {one.role} [{EXAMPLES[one.kind]}], or give {option}"
                 )
-        found[n] = values[n] * (1.0 if size is None else size)
-    return where, found
+        numbers[n] = values[n] * (1.0 if size is None else size)
+    return where, numbers
 
 
 def turned(where: str, quaternions: FloatArray, up: int) -> FloatArray:

@@ -61,8 +61,8 @@ def log_heading(text: str, puck: str | None = None) -> LogHeading:
     ('vx', '')
     """
     name, unit_text = parted(text.strip().strip("\"'").strip())
-    if (found := re.fullmatch(r"(.+?)\s*[\[(]\s*(.*?)\s*[\])]", text.strip())) is not None:
-        name, unit_text = found[1], found[2]  # a unit that no film has
+    if (match := re.fullmatch(r"(.+?)\s*[\[(]\s*(.*?)\s*[\])]", text.strip())) is not None:
+        name, unit_text = match[1], match[2]  # a unit that no film has
     plain = "".join(re.findall(r"[a-z0-9]+", name.lower().replace("ω", "omega")))
     mine = re.sub(r"[^a-z0-9]", "", (puck or "").lower())
     for own in (plain.removeprefix(mine), plain.removesuffix(mine)):

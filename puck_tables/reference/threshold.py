@@ -45,12 +45,12 @@ def threshold_of(text: str) -> Threshold:
     >>> threshold_of("0.1rad/s"), threshold_of("2 mm/s")
     (Threshold(of='spin', value=0.1), Threshold(of='speed', value=0.002))
     """
-    found = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([^0-9\s].*?)\s*", text)
+    match = re.fullmatch(r"\s*([0-9.]+(?:[eE][-+]?[0-9]+)?)\s*([^0-9\s].*?)\s*", text)
     for of, kind in (("spin", "spin"), ("speed", "velocity")):
-        size = None if found is None else unit_size(found[2], kind)
-        if found is not None and size is not None:
+        size = None if match is None else unit_size(match[2], kind)
+        if match is not None and size is not None:
             try:
-                value = float(found[1]) * size
+                value = float(match[1]) * size
             except ValueError:
                 break
             if 0.0 < value < np.inf:

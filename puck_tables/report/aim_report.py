@@ -48,9 +48,9 @@ def board_report(result: BoardAim) -> str:
     first = {"scene": scene.title or "without a title", "wanted": wanted}
     if not (scene.title or scene.pucks):
         first = {"puck": puck_words(scene.puck), "target": result.where.removeprefix("at ")}
-    told = listed({**first, "answer": result.answer}, 8 if "scene" in first else 7)
+    lines = listed({**first, "answer": result.answer}, 8 if "scene" in first else 7)
     if not len(result):
-        return told
+        return lines
     margins = [(*_MARGINS[name], result.columns[name]) for name in _MARGINS
                if name in result.columns]  # fmt: skip
     heads = {
@@ -60,6 +60,6 @@ def board_report(result: BoardAim) -> str:
     rows = zip(
         result.launch_speed, math.degrees(1.0) * result.launch_heading, result.launch_spin,
         *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
-        (course or "none" for course in result.courses), strict=True,
+        (sequence or "none" for sequence in result.courses), strict=True,
     )  # fmt: skip
-    return f"{told}\n\n{columns(heads, rows)}"
+    return f"{lines}\n\n{columns(heads, rows)}"

@@ -42,9 +42,9 @@ def report(run: Run) -> str:
     if run.scene.lateral.strength != 0.0:
         there = [lines["lateral"]] if "lateral" in lines else []
         lines["lateral"] = "; ".join([*there, _EMPIRICAL])
-    told = listed(lines, 10)
+    text = listed(lines, 10)
     if not several:
-        return told
+        return text
     met, passed = (
         _some([
             f"{event.what} at {event.time:.6g} s: {event.puck} and {event.partner}, "
@@ -53,7 +53,7 @@ def report(run: Run) -> str:
         ], "\n")
         for what in ("impact", "line")
     )  # fmt: skip
-    return "\n\n".join(filter(None, [plainly(run), _pucks(run), met, passed, told]))
+    return "\n\n".join(filter(None, [plainly(run), _pucks(run), met, passed, text]))
 
 
 def _of_one(run: Run) -> dict[str, str]:
@@ -79,8 +79,10 @@ def _overhang(run: Run) -> str:
 
     over = {event.puck for event in run.events if event.what == "overhang"}
     pucks = zip(run.names, pucks_of(run.scene), strict=True)
-    cut = [len(edges_under(run.scene.alone(puck))) > 0 for name, puck in pucks if name in over]
-    return "; ".join([CARRIED_BY_REST] * any(cut) + [OVERHANG] * (not all(cut)))
+    overhangs = [
+        len(edges_under(run.scene.alone(puck))) > 0 for name, puck in pucks if name in over
+    ]
+    return "; ".join([CARRIED_BY_REST] * any(overhangs) + [OVERHANG] * (not all(overhangs)))
 
 
 def _of_all(run: Run) -> dict[str, str]:
@@ -186,8 +188,8 @@ def plainly(run: Run) -> str:
         first = f"Time is up after {after}: {who} still {verb}."
     else:
         who, them = ("the puck rests", "it") if rest == 1 else (f"{rest} pucks rest", "them")
-        way = "round" if run.end == "carried round" else "along"
-        first = f"After {after} {who} on the floor, which carries {them} {way}."
+        how = "round" if run.end == "carried round" else "along"
+        first = f"After {after} {who} on the floor, which carries {them} {how}."
     outcomes = [
         f"{len(names)} {_LEAVES[what][len(names) > 1]} ({_some(names)})"
         for what, names in left.items() if names
@@ -239,14 +241,14 @@ def _ending(run: Run, number: int) -> str:
 def _energy(run: Run) -> str:
     """What was given, and what the pucks still have or took along when they left play."""
     last = run.last
-    works = {
+    rows = {
         "by driven bodies": last["work_driven"], "by slope and forces": last["work_given"],
         "by what moves under or leads the pucks": last["work_support"],
     }  # fmt: skip
     words = f"{last['energy_given']:.6g} J given by launches"
-    words += "".join(f", {work:.6g} J {by}" for by, work in works.items() if work != 0.0)
+    words += "".join(f", {work:.6g} J {by}" for by, work in rows.items() if work != 0.0)
     left = sum(run.last_of(name)["kinetic_energy"] for name in run.names) + last["energy_gone"]
-    if abs(left) > 1e-9 * abs(last["energy_given"] + sum(works.values())):
+    if abs(left) > 1e-9 * abs(last["energy_given"] + sum(rows.values())):
         words += f"; {left:.6g} J left, or gone with who left play"
     return words
 
@@ -254,8 +256,8 @@ def _energy(run: Run) -> str:
 def _heat(run: Run) -> str:
     """What floor, drag, rims and impacts took; what is no more than rounding is told as 0."""
     last = run.last
-    works = sum(abs(last[name]) for name in ("work_driven", "work_given", "work_support"))
-    unseen = _ROUNDING * (last["energy_given"] + works)
+    work = sum(abs(last[name]) for name in ("work_driven", "work_given", "work_support"))
+    unseen = _ROUNDING * (last["energy_given"] + work)
     names = {"floor": "heat_dry", "drag": "heat_viscous", "rims": "heat_rims",
              "impacts": "heat_impact"}  # fmt: skip
     heats = {who: last[name] if abs(last[name]) > unseen else 0.0 for who, name in names.items()}

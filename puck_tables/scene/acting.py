@@ -41,8 +41,8 @@ def acting(scene: SceneSpec) -> list[str]:
     kind: Any = type(scene)
     if stray := _stray(kind):
         raise PuckError(f"{', '.join(stray)}: the plan of a run knows no such ingredient")
-    told_of = (entry for entry in entries(scene) if entry.value is not None and entry.acts)
-    there = list(dict.fromkeys(one.acts or "" for one in told_of if one.value != one.default))
+    effects = (entry for entry in entries(scene) if entry.value is not None and entry.acts)
+    there = list(dict.fromkeys(one.acts or "" for one in effects if one.value != one.default))
     if scene.constraint is not None:
         there[there.index("constraint")] = scene.constraint.kind
     return there

@@ -47,7 +47,7 @@ from puck_tables.scene.floor_map import (
 )
 from puck_tables.scene.floor_map import REACH as PATCH_REACH
 
-_TWO_CUTS = 12  # times as many pieces as there were are after two cuts at most
+_TWO_EDGES = 12  # times as many pieces as there were are after two cuts at most
 _NONE = -1  # no stretch
 
 
@@ -121,27 +121,29 @@ def _in_polygon(
     k = 1
     while k < count - 1:
         bx, by = _from_base(floor_map, *corner_of(floor_map, first + k + 1))
-        way, sx, sy = 1.0, ax - ox, ay - oy
+        sense, sx, sy = 1.0, ax - ox, ay - oy
         if sx * (by - oy) < sy * (bx - ox):
-            way = -1.0
+            sense = -1.0
         begin, end, to = _left_of(
-            floor_map, contour, last, one, one, half, ox, oy, ax, ay, way, reach
+            floor_map, contour, last, one, one, half, ox, oy, ax, ay, sense, reach
         )
         goes_on = True
         while goes_on:
             begin, end, to = _left_of(
-                floor_map, begin, end, to, one, half, ax, ay, bx, by, way, reach
+                floor_map, begin, end, to, one, half, ax, ay, bx, by, sense, reach
             )  # fmt: skip
             px, py, ax, ay = ax, ay, bx, by
             k += 1
-            goes_on = k < count - 1 and _TWO_CUTS * (end - begin) <= half
+            goes_on = k < count - 1 and _TWO_EDGES * (end - begin) <= half
             if goes_on:
                 bx, by = _from_base(floor_map, *corner_of(floor_map, first + k + 1))
-                bends = way * ((ax - px) * (by - ay) - (ay - py) * (bx - ax)) > 0.0
-                ahead = way * ((ax - ox) * (by - oy) - (ay - oy) * (bx - ox)) > 0.0
-                goes_on = bends and ahead and way * (sx * (by - oy) - sy * (bx - ox)) > 0.0
-        begin, end, to = _left_of(floor_map, begin, end, to, one, half, ax, ay, ox, oy, way, reach)
-        sums = _exchanged(floor_map, sums, way, part, other, begin, end, slip)
+                turns_left = sense * ((ax - px) * (by - ay) - (ay - py) * (bx - ax)) > 0.0
+                ahead = sense * ((ax - ox) * (by - oy) - (ay - oy) * (bx - ox)) > 0.0
+                goes_on = turns_left and ahead and sense * (sx * (by - oy) - sy * (bx - ox)) > 0.0
+        begin, end, to = _left_of(
+            floor_map, begin, end, to, one, half, ax, ay, ox, oy, sense, reach
+        )
+        sums = _exchanged(floor_map, sums, sense, part, other, begin, end, slip)
     return sums
 
 

@@ -71,19 +71,19 @@ def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
     ['floor.patch[0].friction']
     """
     floor = scene.floor
-    found = {} if not floor.law else {law_name(scene): law_of(floor.law)}
+    laws = {} if not floor.law else {law_name(scene): law_of(floor.law)}
     if not has_laws_by_place(floor):
-        return found
+        return laws
     strips = 1 if floor.strips is None else len(floor.strips.friction)
     for part, one in enumerate(frictions_on(floor, 0.0)):
         name = f"strips.friction[{part}]" if part < strips else f"patch[{part - strips}].friction"
         name = "orthotropic" if part == 0 and floor.strips is None else name
         if isinstance(one, Orthotropic):
             law: Any = one.law
-            found |= {f"floor.{name}.law": law} if law else {}
+            laws |= {f"floor.{name}.law": law} if law else {}
         elif not isinstance(one, float) and name != "orthotropic":
-            found[f"floor.{name}"] = one
-    return found
+            laws[f"floor.{name}"] = one
+    return laws
 
 
 def end_of_laws(scene: SceneSpec) -> tuple[float, str]:
@@ -112,14 +112,14 @@ def law_table(
         if error.reachable is None:
             raise
         finest = rounded_up(error.reachable / LAW_SHARE)
-        bends, smoother = "its exponent", "a law that bends less at its start"
+        kinks, smoother = "its exponent", "a law that bends less at its start"
         if isinstance(law, SpeedLaw):
-            bends, smoother = "its corners", "a law with fewer points"
+            kinks, smoother = "its corners", "a law with fewer points"
         if load.is_integrated:
-            bends, smoother = f"the pressure law {load.law.name}", "uniform pressure"
+            kinks, smoother = f"the pressure law {load.law.name}", "uniform pressure"
         raise AccuracyError(
             f"tol = {scene.tol:g} is out of reach of a table of {law_name(scene)}, with "
-            f"{bends}: give a tol (or --tol) of {finest:g} or more, or {smoother}"
+            f"{kinks}: give a tol (or --tol) of {finest:g} or more, or {smoother}"
         ) from None
 
 

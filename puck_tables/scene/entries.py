@@ -110,10 +110,10 @@ def entry_at(scene: Any, path: str) -> Entry:
     'm'
     """
     whole = re.sub(r"\[\d+\]$", "", path)
-    found = next((entry for entry in entries(scene) if entry.path == whole), None)
-    if found is None:
+    match = next((entry for entry in entries(scene) if entry.path == whole), None)
+    if match is None:
         raise InputError(f"the scene has no entry {shown(path)}: see 'puck scene fields'")
-    return found
+    return match
 
 
 def tables_of(part: Any, kind: Any = None) -> dict[str, Any]:

@@ -41,8 +41,8 @@ from puck_tables.scene.friction import (
 )
 from puck_tables.scene.ingredients import (
     BLADE,
-    CARRIED,
     SLIDES,
+    STICKING,
     Body,
     Model,
     Phase,
@@ -58,7 +58,7 @@ from puck_tables.scene.ingredients import (
 )
 
 SIZE = 10  # numbers that are integrated: six of the state, the four works
-GIVEN, DRY, VISCOUS, SUPPORT = range(6, SIZE)
+FORCE_WORK, DRY, VISCOUS, SUPPORT = range(6, SIZE)
 LAMBDA = SIZE  # the two multipliers follow the state; they are not integrated
 ROW = SIZE + 2  # with the multipliers
 # rows; plain numbers would compile ``rates`` once for each
@@ -118,7 +118,7 @@ def rates_here(phase: Phase, t: float, y: FloatArray, out: FloatArray, row: int)
     """d/dt of the state and λ into out[row] (12,); λ is not determined at rest.
 
     At rest the puck moves with the floor.  What is about to rest slips in the direction that
-    ``way`` gives: to follow how that settles would take steps without number.
+    ``direction`` of the phase gives: to follow how that settles would take steps without number.
     """
     model = phase.model
     body = model.body
@@ -128,10 +128,10 @@ def rates_here(phase: Phase, t: float, y: FloatArray, out: FloatArray, row: int)
     cx, cy = floor_acceleration(surface, y[X], y[Y], vx, vy)
     gx, gy, gm = prescribed_force(model.forces, phase.piece, t)
     out[row, X], out[row, Y], out[row, THETA] = vx, vy, spin
-    out[row, GIVEN] = gx * vx + gy * vy + gm * spin
+    out[row, FORCE_WORK] = gx * vx + gy * vy + gm * spin
     if phase.mode != SLIDES:
-        nx, ny, nw, gain = phase.way
-        gain = 0.0 if phase.mode == CARRIED else gain
+        nx, ny, nw, gain = phase.direction
+        gain = 0.0 if phase.mode == STICKING else gain
         ax, ay, aw = gain * nx, gain * ny, gain * nw
         out[row, VX], out[row, VY], out[row, SPIN] = ax, ay, aw
         fx, fy, fm = gx - body.mass * cx, gy - body.mass * cy, gm - body.inertia * surface.turn

@@ -184,17 +184,17 @@ def _bad_rows(scene: SceneSpec) -> list[str]:
     """What is wrong with tables that stand in the scene; those in files are read when it runs."""
     faults = []
     law, force, strips = scene.floor.law, scene.force.over_time, scene.floor.strips
-    given: list[tuple[str, Any, Any]] = [("floor.law", law, law_of)]
-    given += [
+    tables: list[tuple[str, Any, Any]] = [("floor.law", law, law_of)]
+    tables += [
         (f"floor.strips.friction[{k}]", one, law_of)
         for k, one in enumerate(strips.friction if strips else ())
     ]
-    given += [
+    tables += [
         (f"floor.patch[{k}].friction", one.friction, law_of)
         for k, one in enumerate(scene.floor.patches)
     ]
-    given += [(f"{name}.law", two.law, law_of) for name, two in directions_in(scene.floor).items()]
-    for name, rows, made in (*given, ("force.over_time", force, drive_of)):
+    tables += [(f"{name}.law", two.law, law_of) for name, two in directions_in(scene.floor).items()]
+    for name, rows, made in (*tables, ("force.over_time", force, drive_of)):
         if isinstance(rows, float | Orthotropic):
             continue
         if isinstance(rows, FrictionLaw):

@@ -84,9 +84,9 @@ class FloorMap(NamedTuple):
         ends = law + np.cumsum([0, *map(len, self.laws)])
         for part, number in enumerate(self.which):
             begins[part] = ends[number] if number >= 0 else 0.0
-        cuts = 0 if not len(self.edges) else len(self.edges) + 1
-        room = np.zeros(room_to_clip(self.base, cuts, len(self.corners) > 0))
-        left = room if cuts or self.lifts else room[:0]
+        sections = 0 if not len(self.edges) else len(self.edges) + 1
+        room = np.zeros(room_to_clip(self.base, sections, len(self.corners) > 0))
+        left = room if sections or self.lifts else room[:0]
         head = [
             0.0, 0.0, 1.0, self.base[BASE_LEVER], self.across_x, self.across_y,
             len(self.borders), len(self.patches), at, law if self.laws else 0,
@@ -98,7 +98,7 @@ class FloorMap(NamedTuple):
         return np.concatenate([first, *tables, self.base, *self.laws, left, room])
 
 
-NO_GROUND = np.empty(0)
+NO_FLOOR_MAP = np.empty(0)
 
 
 @inlined
@@ -224,7 +224,7 @@ def sum_over(floor_map: FloatArray, vx: float, vy: float, every: bool) -> None:
         _sum_with(floor_map, part, load)
 
 
-OUTSIDE, ASTRIDE, INSIDE = range(3)  # how a base lies to a patch
+OUTSIDE, OVERLAPS, INSIDE = range(3)  # how a base lies to a patch
 
 
 @inner

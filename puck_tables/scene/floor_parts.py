@@ -68,9 +68,9 @@ def frictions_on(floor: Floor, own: float) -> list[Friction]:
     [0.2, 0.1]
     """
     strips, first = floor.strips, law_of(floor.law) if floor.law else floor.orthotropic or own
-    stretches: list[Any] = [first] if strips is None else list(strips.friction)
-    stretches += [patch.friction for patch in floor.patches]
-    return [_read(one) for one in stretches]
+    frictions: list[Any] = [first] if strips is None else list(strips.friction)
+    frictions += [patch.friction for patch in floor.patches]
+    return [_read(one) for one in frictions]
 
 
 def _read(friction: Any) -> Friction:
@@ -99,9 +99,9 @@ def has_laws_by_place(floor: Floor) -> bool:
     >>> has_laws_by_place(Floor(patches=(Patch(((0.0, 0.1), (1.0, 0.2)), radius=1.0),)))
     True
     """
-    stretches = () if floor.strips is None else floor.strips.friction
+    frictions = () if floor.strips is None else floor.strips.friction
     own = any(
-        not isinstance(one, float) for one in (*stretches, *(p.friction for p in floor.patches))
+        not isinstance(one, float) for one in (*frictions, *(p.friction for p in floor.patches))
     )
     both = floor.orthotropic is not None and bool(floor.orthotropic.law)
     return own or both or bool((floor.law or floor.orthotropic) and floor.patches)
@@ -114,12 +114,12 @@ def directions_in(floor: Floor) -> dict[str, Orthotropic]:
     ['floor.patch[0].friction']
     """
     strips = () if floor.strips is None else floor.strips.friction
-    given = {
+    directions = {
         "floor.orthotropic": floor.orthotropic,
         **{f"floor.strips.friction[{k}]": one for k, one in enumerate(strips)},
         **{f"floor.patch[{k}].friction": one.friction for k, one in enumerate(floor.patches)},
     }
-    return {name: one for name, one in given.items() if isinstance(one, Orthotropic)}
+    return {name: one for name, one in directions.items() if isinstance(one, Orthotropic)}
 
 
 def count_parts(floor: Floor) -> int:
@@ -162,18 +162,18 @@ def belts_of(floor: Floor) -> FloatArray:
     [[0.5, 0.0], [0.2, 0.0]]
     """
     strips = floor.strips
-    found = np.tile(np.array(floor.velocity), (count_parts(floor), 1))
+    velocities = np.tile(np.array(floor.velocity), (count_parts(floor), 1))
     if strips is not None and (strips.across or strips.along):
         c, s = math.cos(strips.direction), math.sin(strips.direction)
         for k in range(len(strips.friction)):
             across = strips.across[k] if strips.across else 0.0
             along = strips.along[k] if strips.along else 0.0
-            found[k] = across * c - along * s, across * s + along * c
-    first = len(found) - len(floor.patches)
+            velocities[k] = across * c - along * s, across * s + along * c
+    first = len(velocities) - len(floor.patches)
     for k, patch in enumerate(floor.patches):
-        around = found[_strip_under(patch, strips)]
-        found[first + k] = around if patch.velocity is None else patch.velocity
-    return found
+        around = velocities[_strip_under(patch, strips)]
+        velocities[first + k] = around if patch.velocity is None else patch.velocity
+    return velocities
 
 
 def _strip_under(patch: Patch, strips: Strips | None) -> int:
@@ -192,8 +192,8 @@ def has_belts(floor: Floor) -> bool:
     >>> has_belts(Floor(velocity=(0.5, 0.0)))
     False
     """
-    found = belts_of(floor)
-    return bool((found != found[0]).any())
+    velocities = belts_of(floor)
+    return bool((velocities != velocities[0]).any())
 
 
 def belt_faults(floor: Floor) -> list[str]:

@@ -98,10 +98,10 @@ def edges_apart(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> f
 
 def point_to_edge(p: FloatArray, a: FloatArray, b: FloatArray) -> float:
     """How far a point is from a straight piece."""
-    way = b - a
-    square = float(way @ way)
-    share = min(max(float((p - a) @ way) / square, 0.0), 1.0) if square > 0.0 else 0.0
-    return math.dist(p, a + share * way)
+    along = b - a
+    square = float(along @ along)
+    share = min(max(float((p - a) @ along) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    return math.dist(p, a + share * along)
 
 
 def patch_faults(floor: Floor) -> list[str]:
@@ -172,13 +172,15 @@ def _reaches_into(ours: FloatArray, theirs: FloatArray, size: float) -> bool:
     """Whether a polygon has part of its border within another one."""
     ahead = np.roll(theirs, -1, axis=0)
     for a, b in zip(ours, np.roll(ours, -1, axis=0), strict=True):
-        cuts = {0.0, 1.0}
+        shares = {0.0, 1.0}
         for c, d in zip(theirs, ahead, strict=True):
-            way, side = b - a, d - c
-            cross = way[0] * side[1] - way[1] * side[0]
+            along, side = b - a, d - c
+            cross = along[0] * side[1] - along[1] * side[0]
             if abs(cross) > 1e-14 * size * size:
-                cuts.add(min(max(((c - a)[0] * side[1] - (c - a)[1] * side[0]) / cross, 0.0), 1.0))
-        places = sorted(cuts)
+                shares.add(
+                    min(max(((c - a)[0] * side[1] - (c - a)[1] * side[0]) / cross, 0.0), 1.0)
+                )
+        places = sorted(shares)
         for low, high in pairwise(places):
             middle = a + 0.5 * (low + high) * (b - a)
             deep = min(point_to_edge(middle, c, d) for c, d in zip(theirs, ahead, strict=True))
@@ -192,8 +194,8 @@ def _within(places: FloatArray) -> FloatArray:
     """A point inside a polygon that runs counter-clockwise: in its lowest corner."""
     n = int(np.lexsort((places[:, 0], places[:, 1]))[0])
     corner, before, after = places[n], places[n - 1], places[(n + 1) % len(places)]
-    found: FloatArray = corner + 1e-6 * ((before - corner) + (after - corner))
-    return found
+    inside: FloatArray = corner + 1e-6 * ((before - corner) + (after - corner))
+    return inside
 
 
 def inside(places: FloatArray, point: FloatArray) -> bool:

@@ -99,8 +99,8 @@ def _damped(start: float, damping: float, wake: float, time: float) -> tuple[flo
     """What v′ = −γ v − w |v| v leaves of a speed, as a share, and its path over that speed."""
     grown, start = -math.expm1(-damping * time) / damping if damping > 0.0 else time, abs(start)
     slowed = 1.0 + wake * start * grown
-    way = math.log(slowed) / (wake * start) if wake * start * grown > _STRAIGHT else grown
-    return math.exp(-damping * time) / slowed, way
+    length = math.log(slowed) / (wake * start) if wake * start * grown > _STRAIGHT else grown
+    return math.exp(-damping * time) / slowed, length
 
 
 @inlined
@@ -108,9 +108,9 @@ def damped(
     row: FloatArray, speed: float, w: float, time: float
 ) -> tuple[float, float, float, float]:
     """What drag alone leaves of a speed and the path over it, s; the same of a spin."""
-    left, way = _damped(speed, row[SLIDING], row[QUADRATIC], time)
+    left, length = _damped(speed, row[SLIDING], row[QUADRATIC], time)
     turns, angle = _damped(w, row[SPINNING], row[SPIN_QUADRATIC], time)
-    return left, way, turns, angle
+    return left, length, turns, angle
 
 
 @inlined

@@ -80,7 +80,7 @@ def _plain_friction(
     speed = size(ux, uy, 0.0)
     fast = rim > speed
     ratio = speed / rim if fast else rim / speed
-    inverse, accel, spin = ratios_at(ratio, fast, friction.cut, friction.delta)
+    inverse, accel, spin = ratios_at(ratio, fast, friction.limits, friction.delta)
     along = load / inverse
     return _against(radius, ux, uy, w, speed, slip, along, accel * along, spin * along)
 
@@ -110,4 +110,4 @@ def at_slip_zero(friction: DryFriction, static: float) -> DryFriction:
     """
     law = friction.by_speed
     still = BySpeed(law.table, static * law.height_ratio, static * law.normal, 0.0)
-    return DryFriction(static * friction.load, static * friction.delta, friction.cut, still)
+    return DryFriction(static * friction.load, static * friction.delta, friction.limits, still)

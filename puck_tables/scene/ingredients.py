@@ -45,10 +45,10 @@ if TYPE_CHECKING:
     from puck_tables.scene.parts import Constraint, Launch
 
 FREE, RAIL, PIVOT, BLADE = range(4)
-SLIDES, CARRIED, STOPS = range(3)
+SLIDES, STICKING, STOPS = range(3)
 # in place of a normal force: where a base lies on several frictions; times as much where they hold
-ASTRIDE = -1.0
-NO_WAY = (0.0, 0.0, 0.0, 0.0)  # of a stretch that is no stop
+SUMMED = -1.0
+NO_DIRECTION = (0.0, 0.0, 0.0, 0.0)  # of a stretch that is no stop
 
 
 class Body(NamedTuple):
@@ -77,7 +77,7 @@ class BySpeed(NamedTuple):
 class Regions(NamedTuple):
     """Dry friction in every region of the floor: f N, δ, and the friction ratios at that δ.
 
-    ``load``, ``delta``: arrays (regions,); ``cuts``: (regions, …), see
+    ``load``, ``delta``: arrays (regions,); ``limits``: (regions, …), see
     :func:`puck_tables.motion.equations_of_motion.ratios_at`; ``by_speed`` takes the place of all.
     ``astride`` (regions,): where the base lies on several frictions of the ``floor_map``, see
     :mod:`puck_tables.scene.base_on_floor`, or is not round; there load and δ are the largest of
@@ -87,9 +87,9 @@ class Regions(NamedTuple):
 
     load: FloatArray
     delta: FloatArray
-    cuts: FloatArray
+    limits: FloatArray
     by_speed: BySpeed
-    astride: npt.NDArray[np.bool_]
+    summed: npt.NDArray[np.bool_]
     floor_map: FloatArray
     laws: npt.NDArray[np.int64]
 
@@ -98,13 +98,13 @@ class DryFriction(NamedTuple):
     """Dry friction in one region; no load: none.
 
     Of a base astride several frictions, or of one that is not round, ``by_speed.table`` is their
-    ground and its ``normal`` is ASTRIDE: a record of its own would be handed on with every call,
+    ground and its ``normal`` is SUMMED: a record of its own would be handed on with every call,
     which costs all scenes more.
     """
 
     load: float
     delta: float
-    cut: FloatArray
+    limits: FloatArray
     by_speed: BySpeed
 
 
@@ -153,7 +153,7 @@ def friction_at(friction: DryFriction, drive: FloatArray, piece: int, t: float) 
             for phase in range(parts_in(law.table)):
                 set_factor(law.table, phase, held_at(drive, piece, ON_PART + phase, t))
     return DryFriction(
-        factor * friction.load, factor * friction.delta, friction.cut,
+        factor * friction.load, factor * friction.delta, friction.limits,
         BySpeed(law.table, height_ratio, normal, law.moving),
     )  # fmt: skip
 
@@ -219,8 +219,8 @@ class Model(NamedTuple):
 class Phase(NamedTuple):
     """What acts between two events.
 
-    ``piece``: how many rows of ``forces.drive`` have passed; ``mode`` SLIDES, CARRIED (at rest on
-    the floor), STOPS: with the constant relative acceleration way[3] times the direction way[:3];
+    ``piece``: how many rows of ``forces.drive`` have passed; ``mode`` SLIDES, STICKING (at rest on
+    the floor), STOPS: with the constant relative acceleration direction[3] times direction[:3];
     ``newton``: 0 for explicit steps; for implicit ones, where the slip settles much faster than it
     changes, how well to solve their equations, in units of the scales.
     """
@@ -229,7 +229,7 @@ class Phase(NamedTuple):
     friction: DryFriction
     piece: int
     mode: int
-    way: tuple[float, float, float, float]
+    direction: tuple[float, float, float, float]
     newton: float
 
 

@@ -61,13 +61,13 @@ def misfits(launch: Launch, hold: Constraint | None, floor: Floor, path: str) ->
     ]  # fmt: skip
     if hold.kind == "pivot" and not hold.reach > 0.0:
         faults.append(f"{path}constraint.reach = {hold.reach:g}: a pivot needs a number > 0 m")
-    wanted, given = allowed_velocity(launch, hold, floor), launch.velocity
-    if given is None:
+    wanted, velocity = allowed_velocity(launch, hold, floor), launch.velocity
+    if velocity is None:
         return faults
-    scale = max(math.hypot(*given), math.hypot(*wanted), math.hypot(*hold.velocity))
-    if math.dist(given, wanted) > MATCH * max(scale, abs(hold.side_slip)):
+    scale = max(math.hypot(*velocity), math.hypot(*wanted), math.hypot(*hold.velocity))
+    if math.dist(velocity, wanted) > MATCH * max(scale, abs(hold.side_slip)):
         faults.append(
-            f"{path}launch.velocity = {list(given)}: the {hold.kind} allows [{wanted[0]:.12g}, "
+            f"{path}launch.velocity = {list(velocity)}: the {hold.kind} allows [{wanted[0]:.12g}, "
             f"{wanted[1]:.12g}] at this spin (leave it out where it follows from the spin)"
         )
     return faults

@@ -18,7 +18,7 @@ from puck_tables.kernels.base_friction import packed, packed_round
 from puck_tables.kernels.pressed_part import NARROWEST
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import LAW_SHARE, UNDER_LAW_ERROR, key_of, moments_of
-from puck_tables.scene.floor_map import LOAD, NO_GROUND, PATCH_COLUMNS, FloorMap
+from puck_tables.scene.floor_map import LOAD, NO_FLOOR_MAP, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
     belts_of,
     directions_in,
@@ -51,7 +51,7 @@ def floor_map_of(scene: SceneSpec, normal: float, top: float = 0.0) -> FloatArra
     floor, puck = scene.floor, scene.puck
     shape, strips = shape_under(scene, top), floor.strips
     if shape is None and not has_sums(floor, puck.height):
-        return NO_GROUND
+        return NO_FLOOR_MAP
     angle = 0.0 if strips is None else strips.direction
     rows, corners = [], [np.empty((0, 2))]
     for patch in floor.patches:

@@ -12,9 +12,9 @@ from puck_tables.scene.floor_map import BASE
 from puck_tables.scene.forces import has_sign, jumps
 from puck_tables.scene.friction import SPIN, VX, VY, size
 from puck_tables.scene.ingredients import (
-    CARRIED,
-    NO_WAY,
+    NO_DIRECTION,
     SLIDES,
+    STICKING,
     DryFriction,
     Model,
     Phase,
@@ -27,7 +27,7 @@ from puck_tables.scene.steps import step
 
 # watched: equal speeds of centre and rim; nothing; no spin
 EQUAL, NOTHING, SPINLESS = -1, -2, -3
-_TURNS, _SETTLED = 3000, 1e-12  # at most; of friction: a direction stays
+_TURNS, _CONVERGED = 3000, 1e-12  # at most; of friction: a direction stays
 _SLOW = 1e-3  # of friction: what brakes less comes closer to rest before it goes straight
 REST = 1e-13  # of the scale of speeds: as good as at rest
 _MARGIN = 0.2  # of friction
@@ -87,7 +87,7 @@ def rests_on(model: Model, friction: DryFriction, piece: int, y: FloatArray) -> 
         return True
     for row in range(piece, rows + 1):  # at last what is left when the rows have ended
         at = row if row == rows else max(row, 1)
-        phase = Phase(model, friction, at, CARRIED, NO_WAY, 0.0)
+        phase = Phase(model, friction, at, STICKING, NO_DIRECTION, 0.0)
         if not excess_at_rest(phase, model.forces.drive[min(row, rows - 1), 0], y)[0] <= level:
             return False
     return True
@@ -183,7 +183,7 @@ def direction_of_end(phase: Phase, t: float, q: float, y: FloatArray, work: Floa
         gain = ax * wx + ay * wy + aw * ww
         ox, oy, ow = ax - gain * wx, ay - gain * wy, aw - gain * ww
         off = size(ox, oy, ow)
-        if not off > _SETTLED * load / mass:
+        if not off > _CONVERGED * load / mass:
             return
         scale *= 0.7 if off > before else 1.03
         before = off
@@ -205,11 +205,11 @@ def goes_straight(
     knows which way it is turned.  What brakes slowly must have settled, and all else be small.
     """
     if slip_led(phase.model.hold, surface_now(phase, t), y) > 2.0 * REST * speed:
-        return NO_WAY, 0.0  # a constraint leads it on
-    way = stopping(phase.model.body.radius, y, work)
-    brakes, mass = -way[3], phase.model.body.mass
+        return NO_DIRECTION, 0.0  # a constraint leads it on
+    direction = stopping(phase.model.body.radius, y, work)
+    brakes, mass = -direction[3], phase.model.body.mass
     if not brakes > 0.0:
-        return NO_WAY, 0.0
+        return NO_DIRECTION, 0.0
     still = q <= 2.0 * REST * speed
     across = math.sqrt(max(pull * pull - brakes * brakes, 0.0))
     small = _SLOW * phase.friction.load
@@ -223,8 +223,8 @@ def goes_straight(
         change = excess_at_rest(phase, t + q / brakes, y)[0] - excess
         quick = 0.5 * q / brakes * abs(change) <= tolerance * unit * mass * brakes
     if excess > SLACK * phase.friction.load or not (quick or still):
-        return NO_WAY, 0.0
-    return way, late
+        return NO_DIRECTION, 0.0
+    return direction, late
 
 
 @inner
@@ -238,12 +238,12 @@ def from_standstill(
     model, load = phase.model, phase.friction.load
     excess, nx, ny, nw = excess_at_rest(phase, t, y)
     if excess <= SLACK * load:
-        return CARRIED, False, 0.0
+        return STICKING, False, 0.0
     q = 2.0 * REST * speed
     if math.isnan(excess):  # no pressure carries it at rest: it tips, whatever a slip would do
         y[VX] = y[VY] = y[SPIN] = excess
         return SLIDES, False, q
-    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_WAY, 0.0)
+    slips = Phase(model, phase.friction, phase.piece, SLIDES, NO_DIRECTION, 0.0)
     if model.surface.static > 1.0:  # once it slips that holds no more
         excess, nx, ny, nw = excess_at_rest(slips, t, y)
     if excess == math.inf:  # it is led where the floor does not go

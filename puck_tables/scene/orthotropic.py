@@ -15,7 +15,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.kernels.elliptic_sums import Ellipse, disc_sums
 
-_SETTLED = 4e-15  # rounding of a direction
+_CONVERGED = 4e-15  # rounding of a direction
 LEAST_RATIO = 0.03  # of f in the two directions; below, steps are many
 
 
@@ -105,7 +105,7 @@ def elliptic_demand(
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
     ex, ey = law.cosine * east + law.sine * north, law.cosine * north - law.sine * east
-    way = 1.0 if torque >= 0.0 else -1.0
+    sense = 1.0 if torque >= 0.0 else -1.0
     cosine, sine = 1.0, 0.0
     bx, by = ex, ey
     if not guided:  # without spin
@@ -117,18 +117,18 @@ def elliptic_demand(
         for _ in range(60):
             phi = (low * last - high * first) / (last - first)
             phi = phi if low < phi < high else 0.5 * (low + high)
-            cosine, sine = math.cos(phi), way * math.sin(phi)
+            cosine, sine = math.cos(phi), sense * math.sin(phi)
             if not guided and force > 0.0:
                 bx, by = _direction_against(law, ex, ey, cosine, sine)
             rx, ry, turning = mean_friction(law, cosine * bx, cosine * by, sine)
             resist = -(rx * ex + ry * ey)
             more, less = force * abs(turning) * radius, abs(torque) * resist
             off = (more - less) / (more + less)
-            if abs(off) <= _SETTLED or high - low <= _SETTLED:
+            if abs(off) <= _CONVERGED or high - low <= _CONVERGED:
                 break
             low, high, first, last, side = _narrowed(low, high, first, last, side, phi, off)
         if force == 0.0:
-            cosine, sine = 0.0, way
+            cosine, sine = 0.0, sense
     rx, ry, turning = mean_friction(law, cosine * bx, cosine * by, sine)
     resist = -(rx * ex + ry * ey) if guided else math.hypot(rx, ry)
     if force == 0.0 and torque != 0.0:
@@ -158,7 +158,7 @@ def _direction_against(
         bx, by = along * ex - across * ey, along * ey + across * ex
         rx, ry, _ = mean_friction(law, cosine * bx, cosine * by, sine)
         off = (ey * rx - ex * ry) / math.hypot(rx, ry)
-        if abs(off) <= _SETTLED or high - low <= _SETTLED:
+        if abs(off) <= _CONVERGED or high - low <= _CONVERGED:
             break
         low, high, first, last, side = _narrowed(low, high, first, last, side, turn, off)
     return bx, by

@@ -140,12 +140,12 @@ def last_factors(floor: Floor) -> FloatArray:
 
 
 def _on_parts(floor: Floor, taken: Callable[[FloatArray], float]) -> FloatArray:
-    found = np.ones(count_parts(floor))
+    factors = np.ones(count_parts(floor))
     for grip in floor.grips:
         place = floor_part(floor, grip.where)
         factor = taken(factors_of(grip)[:, 1])
-        found[place if place >= 0 else slice(None)] *= factor
-    return found
+        factors[place if place >= 0 else slice(None)] *= factor
+    return factors
 
 
 def over_time(floor: Floor, force: Force) -> FloatArray:

@@ -45,7 +45,9 @@ _ITERATIONS = 12  # of Newton's method: beyond, the step is shortened
 _RELATIVE = 1e-3  # of the slip: no step is worse
 _ROUNDING = 1e-12  # of the scales: what no iteration makes better, and
 _NOISE = 1e-14  # of what friction alone would do in the step
-_WAY = 1e-14  # of a step's way: what its places and energies are known to, however short it is
+_OF_LENGTH = (
+    1e-14  # of a step's way: what its places and energies are known to, however short it is
+)
 _SURE = 1e-6  # of it: how well the stages are known
 
 
@@ -142,8 +144,8 @@ def radau_step(
         return math.inf
     for stage in range(3):
         for i in range(SIZE):
-            settles = VX <= i < VX + _STIFF  # within the step, so its rate now says nothing of it
-            z[stage, i] = 0.0 if settles else h * _C[stage] * work[0, i]
+            is_damped = VX <= i < VX + _STIFF  # within the step, so its rate now says nothing of it
+            z[stage, i] = 0.0 if is_damped else h * _C[stage] * work[0, i]
     before, slip_scale = math.inf, scale[VX]
     friction, body = phase.friction, phase.model.body
     brakes = abs(h) * friction.load / (body.mass * slip_scale)
@@ -155,7 +157,7 @@ def radau_step(
             for i in range(SIZE):
                 at[i] = y[i] + z[stage, i]
             rates_in_step(phase, t + _C[stage] * h, at, rows, stage)
-        largest, carried = 0.0, 0.0
+        largest, of_damped = 0.0, 0.0
         for stage in range(3):
             for i in range(SIZE):
                 whole = 0.0
@@ -166,7 +168,7 @@ def radau_step(
                     step[_STIFF * stage + i - VX] = whole - z[stage, i]
                 else:
                     change = abs(whole - z[stage, i]) / scale[i]
-                    carried = max(carried, change)
+                    of_damped = max(of_damped, change)
                     z[stage, i] = whole
         _solve(matrix, order, step)
         moved = 0.0
@@ -180,8 +182,8 @@ def radau_step(
             at[i] = y[i] + z[2, i]
         sure = moved <= _SURE * max(slip_speed(body.radius, y), slip_speed(body.radius, at))
         # the step carries what rounding leaves of velocities on to places and energies
-        noise = max(largest, carried / (1.0 + brakes))
-        largest = max(largest, carried)
+        noise = max(largest, of_damped / (1.0 + brakes))
+        largest = max(largest, of_damped)
         stalls = iteration > 1 and largest >= 0.3 * before and noise <= rounding
         if sure and (largest <= phase.newton or stalls):
             break
@@ -219,8 +221,8 @@ def _error(
         if VX <= i < VX + _STIFF:
             b[i - VX] = defect
         else:
-            way = abs(work[0, i]) / scale[i] + left / scale[X]
-            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _WAY * way))
+            length = abs(work[0, i]) / scale[i] + left / scale[X]
+            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _OF_LENGTH * length))
     _solve(matrix, order, b)
     for i in range(_STIFF):
         size = scale[VX + i]

@@ -21,10 +21,10 @@ from puck_tables.scene.forces import prescribed_force
 from puck_tables.scene.friction import THETA, X, Y, at_slip_zero, friction_force
 from puck_tables.scene.ingredients import (
     BLADE,
-    CARRIED,
     FREE,
     PIVOT,
     RAIL,
+    STICKING,
     Body,
     DryFriction,
     Phase,
@@ -57,15 +57,17 @@ def _pivot_yield(
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
     length = math.hypot(reach, radius)
-    way = (1.0 if demand >= 0.0 else -1.0) / length
+    sense = (1.0 if demand >= 0.0 else -1.0) / length
     if is_mixed(friction):  # it is summed with what friction holds, and as it was again
         floor_map = friction.by_speed.table
         share = floor_map[SHARE]
         floor_map[SHARE] = -friction.by_speed.normal * share
-    _, _, _, heat = friction_force(friction, radius, way * reach * sine, -way * reach * cosine, way)
+    _, _, _, heat = friction_force(
+        friction, radius, sense * reach * sine, -sense * reach * cosine, sense
+    )
     if is_mixed(friction):
         floor_map[SHARE] = share
-    return abs(demand) / length - heat, way * reach * sine, -way * reach * cosine, way
+    return abs(demand) / length - heat, sense * reach * sine, -sense * reach * cosine, sense
 
 
 @kernel
@@ -82,11 +84,11 @@ def demand(
         return elliptic_demand(axes, radius, fx, fy, torque, guided)
     force = math.hypot(fx, fy)
     east, north = (fx / force, fy / force) if force > 0.0 else (1.0, 0.0)
-    way = 1.0 if torque >= 0.0 else -1.0
+    sense = 1.0 if torque >= 0.0 else -1.0
     low, high, phi = 0.0, 0.5 * math.pi, (0.0 if torque == 0.0 else 0.25 * math.pi)
     while True:
         patience(1)
-        cosine, sine = math.cos(phi), way * math.sin(phi) / radius
+        cosine, sine = math.cos(phi), sense * math.sin(phi) / radius
         along, across, turning, heat = friction_force(friction, radius, cosine, 0.0, sine)
         across = 0.0 if guided else across
         resist = math.hypot(along, across)
@@ -183,7 +185,7 @@ def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
     gx, gy, torque = prescribed_force(model.forces, phase.piece, t)
     torque -= body.inertia * surface.turn
     fx, fy = gx - body.mass * ax, gy - body.mass * ay
-    static = surface.static if phase.mode == CARRIED else 1.0
+    static = surface.static if phase.mode == STICKING else 1.0
     friction = friction_at(phase.friction, model.forces.drive, phase.piece, t)
     friction = at_slip_zero(friction, static)
     put_at(friction, y[X], y[Y], y[THETA])
@@ -192,8 +194,8 @@ def excess_at_rest(phase: Phase, t: float, y: FloatArray) -> Yield:
         return constrained_yield(
             friction, model.hold, body, y[THETA], ax, ay, turning, fx, fy, torque, guided
         )
-    carried = torque == 0.0 and (sx != 0.0 or sy != 0.0)
-    if carried and is_mixed(friction) and not _may_tip(friction) and not is_over_belts(friction):
+    is_moved = torque == 0.0 and (sx != 0.0 or sy != 0.0)
+    if is_moved and is_mixed(friction) and not _may_tip(friction) and not is_over_belts(friction):
         # Without a torque b = κ F, and as |u| is convex no slip gains where F is below the least f
         # alone: ∫ σ |u| dA ≥ N |u at the centre of pressure|.  A puck that is carried asks often.
         force = math.sqrt(fx * fx + fy * fy)

@@ -60,8 +60,8 @@ class Restitution:
         if (speeds < 0.0).any():
             raise InputError(f"speed = {speeds.min():g} m/s must not be negative")
         numbers = self.numbers
-        found = np.array([restitution_at(numbers, 0, one) for one in speeds.ravel().tolist()])
-        return np.where(found < 0.0, np.nan, found).reshape(speeds.shape)
+        values = np.array([restitution_at(numbers, 0, one) for one in speeds.ravel().tolist()])
+        return np.where(values < 0.0, np.nan, values).reshape(speeds.shape)
 
 
 @dataclass(frozen=True)

@@ -95,16 +95,16 @@ def rows_over_time(
 
 def _numbers(function: Callable[[float], Any], time: float, width: int | None) -> FloatArray:
     """What the function says, as one to three finite numbers."""
-    given = function(time)
+    value = function(time)
     try:
-        numbers = np.asarray(given, np.float64)
+        numbers = np.asarray(value, np.float64)
     except (TypeError, ValueError):
         numbers = np.empty(0)
     numbers = np.atleast_1d(numbers)
     if numbers.shape not in ((1,), (2,), (3,)) or not np.isfinite(numbers).all():
         raise InputError(
             f"the function must give one, two or three finite numbers; at {time:g} s it gives "
-            f"{given!r}"
+            f"{value!r}"
         )
     if width is not None and len(numbers) != width:
         raise InputError(

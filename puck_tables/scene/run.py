@@ -32,24 +32,13 @@ AT_REST, CARRIED_AWAY, CARRIED_ROUND, TIME_UP, OVER_EDGE, IN_POCKET, TIPPED = ra
 LAST_END = TIPPED
 STEP_LIMIT, EVENT_LIMIT = range(7, 9)
 IMPACTS_WITHOUT_END, UNSOLVED, TOO_FAST, NO_END, REFUSED = range(9, 14)
-EVENTS = (
-    "stick",
-    "slip",
-    "impact",
-    "contact",
-    "entry",
-    "edge",
-    "exit",
-    "overhang",
-    "line",
-    "tip",
-)
+EVENTS = "stick", "slip", "impact", "contact", "entry", "edge", "exit", "overhang", "line", "tip"
 
 STATE = ("x", "y", "orientation", "vx", "vy", "spin")
 HEATS = ("heat_dry", "heat_viscous", "heat_rims", "heat_impact")
-WORKS = ("work_given", "work_support", "work_driven")
+WORK_NAMES = ("work_given", "work_support", "work_driven")
 # numbers of a run as a whole over time; all other columns are of its pucks
-SHARED = ("time", "energy_given", "energy_gone", *WORKS, *HEATS)
+SHARED = ("time", "energy_given", "energy_gone", *WORK_NAMES, *HEATS)
 SLIPS = ("slip_speed", "slip_angle")  # in the laboratory
 
 
@@ -214,12 +203,12 @@ class Run(TimedResult):
         return self.error_estimate * length
 
     def _derived(self) -> dict[str, FloatArray]:
-        found = derived(self.columns)
+        columns = derived(self.columns)
         pucks = self.scene.pucks
         radius: Any = np.array([p.radius for p in pucks]) if pucks else self.scene.puck.radius
         rim = radius * self.columns["spin"]
-        slips = np.hypot(found["speed"], rim), np.arctan2(rim, found["speed"])
-        return {**found, **dict(zip(SLIPS, slips, strict=True))}
+        slips = np.hypot(columns["speed"], rim), np.arctan2(rim, columns["speed"])
+        return {**columns, **dict(zip(SLIPS, slips, strict=True))}
 
     def explain(self) -> str:
         """The model that was taken, and why."""
@@ -305,9 +294,9 @@ def ledger(columns: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
     (array([1.]), array([4.]))
     """
     energy = np.asarray(columns["kinetic_energy"])
-    given = np.asarray(columns["energy_given"])
-    left = energy.sum(axis=-1) if energy.ndim > given.ndim else energy  # of several pucks
-    gains = [given, *(columns.get(name, 0.0) for name in WORKS)]
+    work = np.asarray(columns["energy_given"])
+    left = energy.sum(axis=-1) if energy.ndim > work.ndim else energy  # of several pucks
+    gains = [work, *(columns.get(name, 0.0) for name in WORK_NAMES)]
     losses = [left, *(columns.get(name, 0.0) for name in ("energy_gone", *HEATS))]
     missing = np.abs(sum(gains) - sum(losses))
     return missing, np.max(np.abs(np.broadcast_arrays(*gains, *losses)), axis=0)

@@ -292,8 +292,8 @@ class SceneSpec(KeepsDefaults):
 
     def _fill(self, tables: Mapping[str, Any], source: str, before: float | None = None) -> None:
         """Check all that is given, and take it; pucks may have got the gravity ``before``."""
-        found: dict[str, Range] = {}
-        reading = Reading([], found)
+        ranges: dict[str, Range] = {}
+        reading = Reading([], ranges)
         puck = tables.get("puck")
         if isinstance(puck, ScenePuck) and (stray := puck.only_on_boards):
             raise _refusal(
@@ -304,21 +304,21 @@ class SceneSpec(KeepsDefaults):
                 source,
             )
         values = read_values(type(self), tables, "", reading)
-        batch = batch_of(reading.batches, found, reading.errors)
-        runs = math.prod([one.count for one in found.values()], start=max(len(batch), 1))
+        batch = batch_of(reading.batches, ranges, reading.errors)
+        runs = math.prod([one.count for one in ranges.values()], start=max(len(batch), 1))
         if runs > MAX_RUNS:  # before their numbers are made
             reading.errors.append(
-                f"{len(found)} ranges ({', '.join(list(found)[:3])} ...) make more than "
+                f"{len(ranges)} ranges ({', '.join(list(ranges)[:3])} ...) make more than "
                 f"{MAX_RUNS:g} runs: give fewer or shorter ones"
             )
         reading.errors.extend(_puck_or_pucks(values))
         if values is not None and not reading.errors:
-            reading.errors.extend(_give_gravity(values, found, before))
+            reading.errors.extend(_give_gravity(values, ranges, before))
         if values is None or reading.errors:
             raise _refusal(reading.errors, source)
         for spec in specs(type(self)).values():
             object.__setattr__(self, spec.name, values.get(spec.name, spec.default))
-        axes = {path: one.numbers() for path, one in found.items()}
+        axes = {path: one.numbers() for path, one in ranges.items()}
         if len(batch):
             owner = owner_of(next(iter(batch)))
             number = re.match(r"puck\[(\d+)\]", owner)

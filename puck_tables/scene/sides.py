@@ -68,8 +68,8 @@ def shape_faults(wall: Wall) -> Iterator[str]:
     """
     line = wall.point is not None, wall.normal is not None
     ends = wall.start is not None, wall.end is not None
-    ways = [all(line), all(ends), bool(wall.corners)]
-    if sum(ways) != 1 or any(line) != all(line) or any(ends) != all(ends):
+    forms = [all(line), all(ends), bool(wall.corners)]
+    if sum(forms) != 1 or any(line) != all(line) or any(ends) != all(ends):
         yield "give a point with the normal into the field, a start and an end, or corners"
     elif all(ends) and wall.start == wall.end:
         yield f"end = {wall.end}: must lie elsewhere than its start"
@@ -144,18 +144,19 @@ def corners_in(scene: SceneSpec) -> list[Corner]:
         leaving.setdefault(side.start, []).append((side.wall, (ux, uy)))
         leaving.setdefault(side.end, []).append((side.wall, (-ux, -uy)))
     covered = _covered(scene, sides, list(leaving))
-    found = []
-    for (point, ways), goes_on in zip(leaving.items(), covered, strict=True):
+    corners = []
+    for (point, branches), goes_on in zip(leaving.items(), covered, strict=True):
         if goes_on:
             continue
-        ordered = sorted({way: wall for wall, way in reversed(ways)}.items(), key=_angle)
+        walls = {direction: wall for wall, direction in reversed(branches)}
+        ordered = sorted(walls.items(), key=_angle)
         for (one, wall), (other, next_wall) in zip(ordered, ordered[1:] + ordered[:1],
                                                    strict=True):  # fmt: skip
             turn = math.atan2(one[0] * other[1] - one[1] * other[0],
                               one[0] * other[0] + one[1] * other[1])  # fmt: skip
             if len(ordered) == 1 or -math.pi + _STRAIGHT < turn < 0.0:  # more than half a turn free
-                found.append(Corner(min(wall, next_wall), point, one, other))
-    return found
+                corners.append(Corner(min(wall, next_wall), point, one, other))
+    return corners
 
 
 def _angle(direction: tuple[Point, int]) -> float:
@@ -169,17 +170,17 @@ def _covered(scene: SceneSpec, sides: list[WallSide], points: list[Point]) -> li
     places = np.array(points)
     near = _SAME * float(np.abs(places).max())
     starts = np.array([side.start for side in sides])
-    ways = np.array([side.along for side in sides])
+    directions = np.array([side.along for side in sides])
     off = places[:, None] - starts
-    along = (off * ways).sum(axis=2)
-    across = off[:, :, 0] * ways[:, 1] - off[:, :, 1] * ways[:, 0]
+    along = (off * directions).sum(axis=2)
+    across = off[:, :, 0] * directions[:, 1] - off[:, :, 1] * directions[:, 0]
     longest = np.array([math.dist(side.start, side.end) for side in sides]) - near
-    found = ((near < along) & (along < longest) & (np.abs(across) <= near)).any(axis=1)
+    covered = ((near < along) & (along < longest) & (np.abs(across) <= near)).any(axis=1)
     for wall in scene.walls:
         if wall.point is not None:
             nx, ny, at = line_of(wall)
-            found |= np.abs(places @ (nx, ny) - at) <= near
-    return list(map(bool, found))
+            covered |= np.abs(places @ (nx, ny) - at) <= near
+    return list(map(bool, covered))
 
 
 def cushions_in(scene: SceneSpec) -> list[tuple[str, int]]:
@@ -191,12 +192,12 @@ def cushions_in(scene: SceneSpec) -> list[tuple[str, int]]:
     >>> cushions_in(Scene(Puck(0.1, friction=0.1), walls=[Wall((0.0, 1.0), (1.0, 1.0))]))
     [('wall', 0), ('wall', 0), ('wall', 0)]
     """
-    found = []
+    cushions = []
     for n, wall in enumerate(scene.walls):
-        found += [("wall", n)] * max(len(sides_of(wall)), 1)
-    found += [("post", n) for n in range(len(scene.posts))]
-    found += [("arc", n) for n in range(len(scene.arcs))]
-    return found + [("wall", corner.wall) for corner in corners_in(scene)]
+        cushions += [("wall", n)] * max(len(sides_of(wall)), 1)
+    cushions += [("post", n) for n in range(len(scene.posts))]
+    cushions += [("arc", n) for n in range(len(scene.arcs))]
+    return cushions + [("wall", corner.wall) for corner in corners_in(scene)]
 
 
 def gap_to(wall: Wall, place: Point) -> float:

@@ -17,7 +17,7 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.motion.steppers import DORMAND_PRINCE_8
 from puck_tables.scene.equations import (
     FIRST,
-    GIVEN,
+    FORCE_WORK,
     SIZE,
     by_blade,
     by_floor,
@@ -32,11 +32,11 @@ from puck_tables.scene.equations import (
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
     BLADE,
-    CARRIED,
     FREE,
     PIVOT,
     RAIL,
     SLIDES,
+    STICKING,
     Body,
     Phase,
     Surface,
@@ -157,14 +157,14 @@ def follow_scales(
     That of friction is a share of all of it.  Energies are known to a share of the largest.
     """
     share, slip = _ULP / tolerance, slip_speed(body.radius, y)
-    for i in range(GIVEN):
+    for i in range(FORCE_WORK):
         least = slip if i >= VX else slip * slip / accel
         least = least / body.radius if i in (THETA, SPIN) else least
         scale[i] = max(scale[i], share * max(abs(y[i]), least))
     largest = kinetic_energy(body, y)
-    for i in range(GIVEN, SIZE):
+    for i in range(FORCE_WORK, SIZE):
         largest = max(largest, abs(y[i]))
-    for i in range(GIVEN, SIZE):
+    for i in range(FORCE_WORK, SIZE):
         scale[i] = max(scale[i], largest)
 
 
@@ -243,7 +243,7 @@ def step(
     if own or implicit:
         rates(phase, t + h, new, work, STAGES - 1)
     model = phase.model
-    if phase.mode == CARRIED:
+    if phase.mode == STICKING:
         new[VX] = new[VY] = new[SPIN] = 0.0
         moves = model.surface.spin != 0.0 or model.surface.changes != 0.0
         if not (moves or is_over_belts(phase.friction)):

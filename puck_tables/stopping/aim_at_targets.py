@@ -189,8 +189,8 @@ class Aim(Differentiated, Result):
         return np.stack([self.launch_speed, self.launch_heading, self.launch_spin])
 
     def _again(self, arguments: FloatArray) -> FloatArray:
-        found = self._stops(arguments)
-        return np.stack([getattr(found, name) for name in self.JACOBIAN_ROWS])
+        stops = self._stops(arguments)
+        return np.stack([getattr(stops, name) for name in self.JACOBIAN_ROWS])
 
     def _stops(self, arguments: FloatArray, *, jacobian: bool = False) -> Stops:
         speed, heading, spin = arguments
@@ -253,8 +253,8 @@ class Aim(Differentiated, Result):
         if self.is_one:
             where = {"target": self.target.tolist()}
         title = f"Launches that come to rest at {'a target' if self.is_one else 'targets'}"
-        told = {"title": title, **where, "answer": self.answer, **self.puck.described()}
-        return Dataset({}, columns, told)
+        attributes = {"title": title, **where, "answer": self.answer, **self.puck.described()}
+        return Dataset({}, columns, attributes)
 
 
 def aim(
@@ -269,10 +269,10 @@ def aim(
         raise InputError(
             f"target must be one place (x, y) in m, or (..., 2) of them, got shape {places.shape}"
         )
-    wished, given = _wish({"spin": spin, "speed": speed, "stop_time": stop_time, "angle": angle})
+    wished, wish = _wish({"spin": spin, "speed": speed, "stop_time": stop_time, "angle": angle})
     bounds = _checked_bounds(max_speed, max_spin, count)
     x, y, wanted = broadcast(
-        target_x=places[..., 0], target_y=places[..., 1], **{wished or "wish": given}
+        target_x=places[..., 0], target_y=places[..., 1], **{wished or "wish": wish}
     )
     places = np.stack([x, y], axis=-1)
     with np.errstate(over="ignore"):
@@ -287,19 +287,19 @@ def aim(
     result: dict[int, FloatArray] = {}
 
     def work(start: int, stop: int) -> None:
-        found = search.launches(*(one[start:stop] for one in flat))
-        found[:, OF] += start
-        result[start] = found
+        launches = search.launches(*(one[start:stop] for one in flat))
+        launches[:, OF] += start
+        result[start] = launches
 
     run_chunks(work, distance.size, _CHUNK, threads)
     rows = np.concatenate([np.empty((0, ANGLE + 1)), *(result[n] for n in sorted(result))])
-    found = Aim(
+    aimed = Aim(
         search, places, np.asarray(wanted), rows[:, OF].astype(np.int64), rows[:, [VX, VY]],
         rows[:, SPIN].copy(), rows[:, STOP_TIME].copy(), rows[:, ANGLE].copy(), threads,
     )  # fmt: skip
-    if found.is_one:
-        _ = found.answer  # a question out of floating point is refused at once
-    return found
+    if aimed.is_one:
+        _ = aimed.answer  # a question out of floating point is refused at once
+    return aimed
 
 
 def _wish(wishes: dict[str, Any]) -> tuple[str | None, FloatArray]:

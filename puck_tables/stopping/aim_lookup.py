@@ -20,7 +20,7 @@ from puck_tables.kernels.compile import inlined, inner, kernel, patience, spline
 from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping.lookup import WIDTH, slip_place
 
-SPEED, RIM, TIME, TURN, BEND = range(5)
+SPEED, RIM, TIME, TURN, DEFLECTION = range(5)
 LOGS = 5  # quantities of a piece, the five above
 SLIDE = 0.5 * math.log(2.0)  # ln v = ln t₀ of the slide without spin
 POWERS = 6  # of a piece
@@ -124,14 +124,14 @@ def fill_logs(u: FloatArray, section: FloatArray, limits: FloatArray, out: Float
         patience(1)
         if u[n] == -math.inf:
             out[n, SPEED], out[n, RIM], out[n, TIME] = SLIDE, u[n], SLIDE
-            out[n, TURN], out[n, BEND] = u[n], 0.0
+            out[n, TURN], out[n, DEFLECTION] = u[n], 0.0
         elif limits.shape[0] > 0:
             for quantity in range(LOGS):
                 out[n, quantity] = _in_part(quantity, u[n], limits)
         else:
             speed, rim, time, turn, along, left = _plain_logs(u[n], section)
             out[n, SPEED], out[n, RIM], out[n, TIME], out[n, TURN] = speed, rim, time, turn
-            out[n, BEND] = math.atan2(left, along)
+            out[n, DEFLECTION] = math.atan2(left, along)
 
 
 @kernel

@@ -65,16 +65,16 @@ def stop_arrays(
     method = (
         Method.LOOK_UP if real("tol", tol, "dimensionless") >= FINEST_SECTION else Method.ADAPTIVE
     )
-    found = stop(
+    stops = stop(
         _pairs(vx, vy), spin, delta=delta, decel=decel, radius=radius, friction=friction,
         height=height, gravity=gravity, tol=tol,
         method=method.value, pressure=pressure, gyration=gyration, threads=1,
     )  # fmt: skip
-    if found.status.any():
+    if stops.status.any():
         raise InputError(TOO_LARGE)
     return (
-        found.stop_time, found.stop_x, found.stop_y, found.path_length, found.turn_angle,
-        found.body_angle,
+        stops.stop_time, stops.stop_x, stops.stop_y, stops.path_length, stops.turn_angle,
+        stops.body_angle,
     )  # fmt: skip
 
 

@@ -220,11 +220,11 @@ class Differentiated:
     def _again(self, arguments: FloatArray) -> FloatArray:
         """The rows of the Jacobian's results (rows, m) of arguments (columns, m)."""
         assert self._anew is not None
-        found = self._anew(
+        result = self._anew(
             arguments[:2].T, arguments[2], *arguments[len(LAUNCH_NAMES) :],
             **dict(zip(self.JACOBIAN_COLUMNS[3:6], arguments[3:6], strict=True)),
         )  # fmt: skip
-        return np.stack([getattr(found, name) for name in self.JACOBIAN_ROWS])
+        return np.stack([getattr(result, name) for name in self.JACOBIAN_ROWS])
 
 
 def refuse_rest(launches: FloatArray, shape: tuple[int, ...]) -> None:

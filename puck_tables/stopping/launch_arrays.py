@@ -124,9 +124,9 @@ def launches_of(
     >>> launches_of([[1.0, 0.0], [2.0, 0.0]], 5.0, 0.5, 1.0, 1.0).matrix[:3].tolist()
     [[1.0, 2.0], [0.0, 0.0], [5.0, 5.0]]
     """
-    given = (spin, delta, decel, radius)
+    others = (spin, delta, decel, radius)
     if isinstance(velocity, tuple | list) and len(velocity) == 2:
-        numbers = (*velocity, *given)
+        numbers = (*velocity, *others)
         if _NUMBERS.issuperset(map(type, numbers)):  # one launch, as cheap as can be
             try:
                 row = np.array(numbers, np.float64).reshape(COLUMNS, 1)
@@ -138,7 +138,7 @@ def launches_of(
         velocity_array(velocity)
     arrays = [
         real_view(name, values, unit)
-        for (name, unit), values in zip(_UNITS.items(), given, strict=True)
+        for (name, unit), values in zip(_UNITS.items(), others, strict=True)
     ]
     try:
         shape = np.broadcast(pairs[..., 0], *arrays).shape
@@ -147,7 +147,7 @@ def launches_of(
         raise
     vx, vy, step, is_held = _components(pairs, shape, pairs is not velocity)
     columns = []
-    for array, values in zip(arrays, given, strict=True):
+    for array, values in zip(arrays, others, strict=True):
         column, held = flat_column(array, shape, array is not values)
         columns.append(column)
         is_held |= held

@@ -34,7 +34,7 @@ from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.unit_motion import direction
 from puck_tables.stopping.aim_lookup import (
-    BEND,
+    DEFLECTION,
     LOGS,
     NO_PIECES,
     PIECE,
@@ -56,7 +56,7 @@ _LOCAL = 1e-12  # of a step, where friction is a section
 _PLAIN_LOCAL = 2e-13  # of a step, with closed forms
 _SCANNED, _SPACING = 36.0, 0.25  # of u: beyond, nodes are far; and between nodes
 _RESOLVED = 1e-8  # of logarithms: how far a cubic may be off in the middle
-_FITTED = 1e-10  # of logarithms, what a look-up is good to
+_LOG_ERROR = 1e-10  # of logarithms, what a look-up is good to
 _NARROWEST = 1e-7  # of u between nodes: next to a line it does not get smooth
 _NEAR_LIMIT = 1e-3  # of |ρ_∥ − σ|: the derivatives are 0/0 at the limit of the motion
 _OF_STOPS = [0, 1, 2, 4]  # columns of what is integrated: time, place, angle
@@ -256,10 +256,10 @@ def launch_family_of(body: UnitPuck) -> LaunchFamily:
         both = n + np.arange(n.size)
         fresh[both], fresh[both + 1] = True, True
     limits, fit = _pieces(body, u, values, slopes, middles)
-    turns = np.unique(_turns(u, values[:, :BEND], slopes[:, :BEND]))
+    turns = np.unique(_turns(u, values[:, :DEFLECTION], slopes[:, :DEFLECTION]))
     more = np.concatenate([ends, turns])
     u = np.concatenate([u, more])
-    values = np.concatenate([values[:, :BEND], _values(body, more)])
+    values = np.concatenate([values[:, :DEFLECTION], _values(body, more)])
     order = np.argsort(u, kind="stable")
     return LaunchFamily(body, u[order], values[order], limits, fit)
 
@@ -309,7 +309,7 @@ def _logs(u: FloatArray, stops: FloatArray) -> tuple[FloatArray, ...]:
 
 
 def _values(body: UnitPuck, u: FloatArray) -> FloatArray:
-    return np.column_stack(_logs(u, _stops(body, u))[:BEND])
+    return np.column_stack(_logs(u, _stops(body, u))[:DEFLECTION])
 
 
 def _with_slopes(body: UnitPuck, u: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -361,5 +361,5 @@ def _pieces(
         truth = np.column_stack(_logs(there, _stops(body, there)))
         guess = np.empty((there.size, LOGS))
         fill_logs(there, np.empty((2, WIDTH)), limits, guess)
-        fit[blind] &= (np.abs(guess - truth) <= _FITTED).all(axis=1)
+        fit[blind] &= (np.abs(guess - truth) <= _LOG_ERROR).all(axis=1)
     return limits, fit

@@ -48,9 +48,9 @@ from puck_tables.stopping.lookup import (
     place_block,
 )
 from puck_tables.stopping.similarity_lookup import (
-    CURVE_WIDTH,
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
+    MOTION_WIDTH,
     TURN_POWERS,
     TURN_STEP,
     cell_of,
@@ -65,11 +65,11 @@ from puck_tables.stopping.similarity_lookup import (
 from puck_tables.stopping.state_lookup import PUCK_ROWS, fill_states_at
 
 # numbers from one node to the next: of stops, of the curve, of turns
-_ROW, _CURVE_ROW = WIDTH * STOP_POWERS, CURVE_WIDTH * HEIGHTS
+_ROW, _MOTION_ROW = WIDTH * STOP_POWERS, MOTION_WIDTH * HEIGHTS
 _TURNS_ROW = TURN_STEP * TURN_POWERS
 _REST, _ALL = 3, 6  # rows of what a stop has besides time and place, and with them
 # rows of a block: the functions, those of the height, and what becomes of it
-_F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN, _F_CURVE, _F_LENGTH = range(PLACED, PLACED + 7)
+_F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN, _F_LOG_RATIO, _F_LENGTH = range(PLACED, PLACED + 7)
 _C0, _KAPPA, _TURNING, _QUARTER, _S = range(PLACED + 7, PLACED + 12)
 _BEGUN, _SWUNG = PLACED + 12, PLACED + 13
 _OUT = PLACED + 14  # from here on the rows of what is known
@@ -94,7 +94,7 @@ def fill_launch_lookup(
     Q²/(J r) may be too large, and how many are no launches.
     """
     patience(out.shape[1])
-    flat, flat_curve, flat_turns = stops.reshape(-1), functions.reshape(-1), turns.reshape(-1)
+    flat, flat_functions, flat_turns = stops.reshape(-1), functions.reshape(-1), turns.reshape(-1)
     room, is_rest = np.empty(_ROWS * BLOCK), out.shape[0] == _REST
     cells, log_share = float(stops.shape[1] - 3), math.log(turn_share)
     fill_constants(vx, vy, spin, delta, decel, radius, out.shape[1], room)
@@ -105,12 +105,12 @@ def fill_launch_lookup(
         bad += place_block(room, count, stops, _ROW)
         _find_constants(room, count, constants)
         for n in range(count):
-            at = int(row_of(room, FIRST, n)) // _ROW * _CURVE_ROW
+            at = int(row_of(room, FIRST, n)) // _ROW * _MOTION_ROW
             s, weights = row_of(room, _S, n), basis(row_of(room, INSIDE, n))
-            f = spline_values(flat_curve, at, weights, s, CURVE_WIDTH, HEIGHTS)
+            f = spline_values(flat_functions, at, weights, s, MOTION_WIDTH, HEIGHTS)
             into_row(room, _F_BODY, n, f[0])
             into_row(room, _F_TURN, n, f[1])
-            into_row(room, _F_CURVE, n, f[2])
+            into_row(room, _F_LOG_RATIO, n, f[2])
             into_row(room, _F_LENGTH, n, f[3])
         if is_rest:
             for n in range(count):
@@ -191,18 +191,18 @@ def _find_stops(room: FloatArray, count: int) -> int:
         speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
         decel = row_of(room, DECEL, n)
         f = rows_of(room, _F_TIME, 3, n)
-        found = stopped(
+        stops = stopped(
             vx, vy, rim, row_of(room, SPIN, n), speed, slip, row_of(room, DELTA, n), decel,
             (f[0], f[1], f[2], row_of(room, _F_BODY, n), row_of(room, _F_LENGTH, n)),
         )  # fmt: skip
-        into_row(room, _TIME, n, found[0])
-        into_row(room, _X, n, found[1])
-        into_row(room, _Y, n, found[2])
-        into_row(room, _LENGTH, n, found[3])
-        into_row(room, _BODY, n, found[4])
+        into_row(room, _TIME, n, stops[0])
+        into_row(room, _X, n, stops[1])
+        into_row(room, _Y, n, stops[2])
+        into_row(room, _LENGTH, n, stops[3])
+        into_row(room, _BODY, n, stops[4])
         into_row(room, _Q, n, slip)
         into_row(room, _V, n, speed)
-        into_row(room, _T, n, found[5])
+        into_row(room, _T, n, stops[5])
         size = slip / decel * slip
         usual = (size < LARGEST) & (size < LARGEST * row_of(room, RADIUS, n))
         doubtful += 0 if usual else 1
@@ -219,7 +219,7 @@ def _find_places(room: FloatArray, count: int, cells: float, log_share: float) -
         c0, kappa = row_of(room, _C0, n), row_of(room, _KAPPA, n)
         turning = row_of(room, _TURNING, n)
         is_fast, share = rim > speed, share_of(speed, rim)
-        sign, by_slip = number_at(is_fast, share, c0, kappa, tilt, row_of(room, _F_CURVE, n))
+        sign, by_slip = number_at(is_fast, share, c0, kappa, tilt, row_of(room, _F_LOG_RATIO, n))
         heading = heading_at(is_fast, share, turning, tilt, row_of(room, _F_TURN, n))
         ends_fast, log_y, swung = place_after(log_share, sign, by_slip, kappa, turning, tilt)
         _, xi = place_of_log(log_y)

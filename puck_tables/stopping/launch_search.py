@@ -21,7 +21,7 @@ from puck_tables.errors import InputError
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.unit_motion import direction
-from puck_tables.stopping.aim_lookup import BEND, RIM, SPEED, TIME, TURN  # two are bounded
+from puck_tables.stopping.aim_lookup import DEFLECTION, RIM, SPEED, TIME, TURN  # two are bounded
 from puck_tables.stopping.exact import integrated_stops
 from puck_tables.stopping.launch_arrays import fits
 from puck_tables.stopping.launch_family import (
@@ -86,7 +86,7 @@ class LaunchSearch:
             logs[:, :TIME] = np.minimum(logs[:, :TIME], limits)
         of = away[which]
         speed, turning, time = _numbers(logs[:, :TURN] - [0.0, math.log(puck.radius), 0.0]).T
-        heading = np.arctan2(places[of, 1], places[of, 0]) - sense * logs[:, BEND]
+        heading = np.arctan2(places[of, 1], places[of, 0]) - sense * logs[:, DEFLECTION]
         rows = np.empty((of.size, ANGLE + 1))
         rows[:, OF], rows[:, SPIN], rows[:, STOP_TIME] = of, sense * turning, time
         with np.errstate(over="ignore"):  # then the launch does not fit either
@@ -95,10 +95,10 @@ class LaunchSearch:
         if away.size < distance.size:
             rows = np.concatenate([rows, self._on_the_spot(distance, wanted)])
         rows += 0.0  # no negative zero
-        launched = np.empty((6, len(rows)))
-        launched[:3] = rows[:, [VX, VY, SPIN]].T
-        launched[3], launched[4], launched[5] = puck.delta, puck.decel, puck.radius
-        if not fits(launched, puck.body.longest).all():
+        result = np.empty((6, len(rows)))
+        result[:3] = rows[:, [VX, VY, SPIN]].T
+        result[3], result[4], result[5] = puck.delta, puck.decel, puck.radius
+        if not fits(result, puck.body.longest).all():
             raise InputError(_TOO_LARGE)
         return rows[np.lexsort((rows[:, SPIN], rows[:, OF]))]
 
@@ -130,7 +130,7 @@ class LaunchSearch:
             least = np.full(len(scales), math.inf)
             np.minimum.at(least, of, np.exp(rows[:, TURN] + scales[of, TURN]))
             fewest = np.where(least < math.inf, least, 0.0) * (1.0 - 1e-9)
-        found = []
+        roots = []
         for sense in (-1.0, 1.0):
             first = np.mod(sense * wanted, 2.0 * math.pi)
             first += 2.0 * math.pi * np.maximum(np.ceil((fewest - first) / (2.0 * math.pi)), 0.0)
@@ -141,12 +141,12 @@ class LaunchSearch:
             which, _, rows = self.family.roots(TURN, log - scales[each, TURN])
             logs = rows + scales[each[which]]
             logs[:, TURN] = log[which]
-            found.append((each[which], np.full(which.size, sense), logs))
+            roots.append((each[which], np.full(which.size, sense), logs))
             if sense > 0.0:  # no turn at all: the slide without spin, which has no sense
                 still = each[turns == 0.0]
                 slides = np.tile(SLIDE_ROW, (still.size, 1)) + scales[still]
-                found.append((still, np.ones(still.size), slides))
-        which, senses, logs = (np.concatenate(one) for one in zip(*found, strict=True))
+                roots.append((still, np.ones(still.size), slides))
+        which, senses, logs = (np.concatenate(one) for one in zip(*roots, strict=True))
         return which, senses, logs
 
     def _logs(self, scales: FloatArray, wanted: FloatArray) -> tuple[npt.NDArray[Any], FloatArray]:
@@ -204,17 +204,17 @@ class LaunchSearch:
         if self.wished not in ("spin", "stop_time", "angle"):
             return np.empty((0, ANGLE + 1))
         which = np.flatnonzero(distance == 0.0)
-        puck, given = self.puck, wanted[which]
+        puck, limits = self.puck, wanted[which]
         slowing = puck.decel / puck.radius / puck.body.spin_time  # rad/s², evenly
         with np.errstate(over="ignore", under="ignore", invalid="ignore"):
             if self.wished == "spin":
-                turning = given
+                turning = limits
             elif self.wished == "stop_time":
-                which, turning = np.repeat(which, 2), np.repeat(given * slowing, 2)
-                turning *= np.tile([-1.0, 1.0], given.size)
+                which, turning = np.repeat(which, 2), np.repeat(limits * slowing, 2)
+                turning *= np.tile([-1.0, 1.0], limits.size)
             else:
                 sense = np.array([-1.0, 1.0])[:, None]
-                first = np.mod(sense * given[:, None, None], 2.0 * math.pi)
+                first = np.mod(sense * limits[:, None, None], 2.0 * math.pi)
                 turns = (sense * (first + 2.0 * math.pi * np.arange(self.count))).ravel()
                 which = np.repeat(which, 2 * self.count)
                 turning = np.copysign(np.sqrt(2.0 * slowing * np.abs(turns)), turns)
@@ -343,21 +343,21 @@ def misses(
     >>> misses(puck, np.array([0.5, 0.1]), *slide).round(9).tolist()
     [0.1]
     """
-    cut = source_of(puck.body).friction(SECTION_ACCURACY).coefficients
+    coefficients = source_of(puck.body).friction(SECTION_ACCURACY).coefficients
     place = np.broadcast_to(target[..., 0] + 1j * target[..., 1], spin.shape)
     distance, miss = np.abs(place), np.zeros(spin.size)
     moved = distance > 0.0  # pure spin stays where it is
-    distance, launched, turning = distance[moved], velocity[moved], spin[moved]
+    distance, velocities, turning = distance[moved], velocity[moved], spin[moved]
     with np.errstate(divide="ignore"):
-        speed = np.log(np.hypot(*launched.T))
+        speed = np.log(np.hypot(*velocities.T))
         rim = np.log(np.abs(turning)) + math.log(puck.radius)
     u = rim - speed
     heights = np.full(u.size, puck.delta)
-    stops = integrated_stops(u, heights, cut, _CHECK_LOCAL, direction(u)[0], threads)
+    stops = integrated_stops(u, heights, coefficients, _CHECK_LOCAL, direction(u)[0], threads)
     log_q = np.maximum(speed, rim) + 0.5 * np.log1p(np.exp(-2.0 * np.abs(u)))
-    way = stops[:, 1] + 1j * np.copysign(1.0, turning) * stops[:, 2]
+    displacement = stops[:, 1] + 1j * np.copysign(1.0, turning) * stops[:, 2]
     # logarithms: Q²/J may be far larger than the distance
     scale = 2.0 * log_q - math.log(puck.decel) - np.log(distance)
-    way *= np.exp(scale + 1j * np.arctan2(launched[:, 1], launched[:, 0]))
-    miss[moved] = distance * np.abs(way - place[moved] / distance)
+    displacement *= np.exp(scale + 1j * np.arctan2(velocities[:, 1], velocities[:, 0]))
+    miss[moved] = distance * np.abs(displacement - place[moved] / distance)
     return miss

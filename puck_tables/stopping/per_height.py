@@ -72,7 +72,7 @@ class SolverPerHeight:
     'look-up and integrated'
     """
 
-    launched = ("launch_vx", "launch_vy", "launch_spin", "delta")
+    launch_columns = ("launch_vx", "launch_vy", "launch_spin", "delta")
     outputs = OUTPUTS
 
     def __init__(

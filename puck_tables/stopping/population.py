@@ -235,9 +235,9 @@ def _values(
         unit = COLUMNS[COLUMN[name]].unit
         values[name] = finite_array(name, value, unit)
         refuse_outside(name, values[name], name)
-        if (given := values[name]).size:
+        if (numbers := values[name]).size:
             usual = OF_A_PUCK if name in ("radius", "height") else 0.0
-            question(name, max(given.min().item(), given.max().item(), key=abs), unit, usual)
+            question(name, max(numbers.min().item(), numbers.max().item(), key=abs), unit, usual)
     return values, {"pressure": ()}, result
 
 
@@ -353,9 +353,9 @@ class StopSample(StopMap, Summary):
     @property
     def drawn_words(self) -> str:
         """What scatters, in words."""
-        found = {
+        words = {
             name.removeprefix("drawn_"): text
             for name, text in self._own.attributes.items() if name.startswith("drawn_")
         }  # fmt: skip
-        said = (f"{name} {text} {COLUMNS[name].unit}" for name, text in found.items())
+        said = (f"{name} {text} {COLUMNS[name].unit}" for name, text in words.items())
         return ", ".join(one.removesuffix(" 1") for one in said)

@@ -175,8 +175,8 @@ def regular_parts(axis: SlipAxis, delta: float) -> FloatArray:
     k = ratio_at(xi)
     # du/dξ = ±(dk/dξ)/k,  k = q⁴/(2 − q⁴)
     q = xi * (2.0 - xi)
-    stretch = 8.0 * q**3 * 2.0 * (1.0 - xi) / (2.0 - q**4) ** 2 / k
-    weight = stretch * _GAUSS_WEIGHTS * 0.5 / n
+    slope = 8.0 * q**3 * 2.0 * (1.0 - xi) / (2.0 - q**4) ** 2 / k
+    weight = slope * _GAUSS_WEIGHTS * 0.5 / n
     sides = []
     for sign in (1.0, -1.0):  # u = ln k below π/4, −ln k above
         slopes = np.stack(regular_slopes(sign * np.log(k), delta), axis=-1)
@@ -187,7 +187,7 @@ def regular_parts(axis: SlipAxis, delta: float) -> FloatArray:
     return np.concatenate([sides[0], sides[1][-2::-1]])
 
 
-_TIME, _ALONG, _ACROSS, _LENGTH, _BODY, _CURVE, _TURN = range(7)  # as the table has them
+_TIME, _ALONG, _ACROSS, _LENGTH, _BODY, _LOG_RATIO, _TURN = range(7)  # as the table has them
 _FAST = np.array([False, True])[:, None, None]  # the side of r|ω| > v
 _ROUNDING = 2e-16  # of a double
 _LOOKS = 100  # at most
@@ -251,7 +251,7 @@ class InverseSolution:
         """Ln y at places on the axis of slip."""
         share = (xi * (2.0 - xi)) ** 4
         c, (plus, minus) = np.where(_FAST, 1.0 - share, share - 1.0), _end_logs(share)
-        log_n = np.log(np.abs((c - self.c0) / self.c0)) + self.at(_CURVE, xi)
+        log_n = np.log(np.abs((c - self.c0) / self.c0)) + self.at(_LOG_RATIO, xi)
         log_n -= self.kappa * (plus / self.slow + minus / self.fast)
         if with_time:
             log_n += self.kappa * (np.log(self.at(_TIME, xi)) - self.quarter)

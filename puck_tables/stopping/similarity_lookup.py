@@ -39,9 +39,9 @@ from puck_tables.stopping.lookup import CONSTANT_HEIGHTS, HEIGHTS, STOP_POWERS, 
 
 Numbers = tuple[float, ...]
 
-CURVE_WIDTH = 4  # body angle, S/δ, κR, path length
-TURN_FUNCTION, CURVE_FUNCTION = 1, 2  # of these
-ORBIT_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
+MOTION_WIDTH = 4  # body angle, S/δ, κR, path length
+TURN_FUNCTION, LOG_FUNCTION = 1, 2  # of these
+STOPS_WIDTH = 8  # 2w/y, T, along, across; body angle, G and nothing
 REGULAR = 5  # G of these
 TURN_STEP, TURN_POWERS = 4, 3  # of one function: powers m, m + 4, m + 8 of s, m = 0 … 3
 TINY = 1e-300  # its logarithm is a number
@@ -240,7 +240,7 @@ def look_up_launch(
         stops.reshape(-1), WIDTH * STOP_POWERS * node, weights, s, WIDTH, STOP_POWERS
     )
     body, part, regular, length = spline_values(
-        functions.reshape(-1), CURVE_WIDTH * HEIGHTS * node, weights, s, CURVE_WIDTH, HEIGHTS
+        functions.reshape(-1), MOTION_WIDTH * HEIGHTS * node, weights, s, MOTION_WIDTH, HEIGHTS
     )
     out[TIME], out[STOP_X], out[STOP_Y], out[LENGTH], out[BODY], t = stopped(
         vx, vy, edge, spin, speed, slip, delta, decel, (t, along, across, body, length)
@@ -278,9 +278,9 @@ def look_up_state(puck: FloatArray, time: float, splines: FloatArray, out: Float
         math.log1p(-elapsed), known[SIGN_N], known[LOG_N], known[KAPPA], turning, delta
     )
     part, xi = place_of_log(log_y)
-    first, inside = cell_of(xi, is_fast, float(splines.shape[1] - 3), ORBIT_WIDTH * HEIGHTS)
+    first, inside = cell_of(xi, is_fast, float(splines.shape[1] - 3), STOPS_WIDTH * HEIGHTS)
     f = spline_values(
-        splines.reshape(-1), int(first), basis(inside), 2.0 * delta * delta - 1.0, ORBIT_WIDTH,
+        splines.reshape(-1), int(first), basis(inside), 2.0 * delta * delta - 1.0, STOPS_WIDTH,
         HEIGHTS,
     )  # fmt: skip
     turn = swung + turning * log_of(known[T_LAUNCH]) - known[HEADING0] + delta * f[REGULAR]

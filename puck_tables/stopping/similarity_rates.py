@@ -52,29 +52,31 @@ _STATE_ROW, _RATE_ROW = HEIGHTS * STATE_WIDTH, STOP_POWERS * RATE_WIDTH
 SECTION_WIDTH = 2 * STATE_WIDTH + RATE_WIDTH  # numbers found at a place: states, slopes, rates
 
 # rows of a block: what is known of a launch: its puck, its place on the curve in natural units
-EAST, NORTH, SPIN, DELTA, DECEL, RADIUS, ONE_TIME, SLIP, UNIT, BEND = range(10)
-LAUNCHED, LAUNCHED_ROWS = 10, 7  # the first row, and how many: of the launch itself
-V0, A0, T0, ONE_V, U0, BEGUN, ONE_POLE = range(LAUNCHED, LAUNCHED + LAUNCHED_ROWS)
+EAST, NORTH, SPIN, DELTA, DECEL, RADIUS, ONE_TIME, SLIP, UNIT, SENSE = range(10)
+FROM_LAUNCH, FROM_LAUNCH_ROWS = 10, 7  # the first row, and how many: of the launch itself
+V0, A0, T0, ONE_V, U0, BEGUN, ONE_POLE = range(FROM_LAUNCH, FROM_LAUNCH + FROM_LAUNCH_ROWS)
 # of its height: constants of the curve, their derivatives by δ, and factors of what is at its ends
 FIXED, FIXED_ROWS = 17, 15
 KAPPA, H0, C0, K_TILT, H0_TILT, C0_TILT, ONE_KAPPA = range(7)
-LOG_SLOW, LOG_FAST, TILT_SLOW, TILT_FAST, TURN_SLOW, TURN_FAST, BEND_SLOW, BEND_FAST = range(7, 15)
+LOG_SLOW, LOG_FAST, TILT_SLOW, TILT_FAST, TURN_SLOW, TURN_FAST, HEADING_SLOW, HEADING_FAST = range(
+    7, 15
+)
 # what was where it began, and its stop
 HERE, HERE_ROWS = 32, 6
 STOP, STOP_ROWS = 38, 11  # the first row, and how many: of its stop
 FACTS = STOP + STOP_ROWS
 # where a state is, what stands there, and its derivatives
 MOMENT, LEFT, TURNED, SHARE, FAST, _FIRST, _INSIDE = range(FACTS, FACTS + 7)
-FOUND = FACTS + 7
-WORK, WORK_ROWS = FOUND + SECTION_WIDTH, 18
+AT_PLACE = FACTS + 7
+WORK, WORK_ROWS = AT_PLACE + SECTION_WIDTH, 18
 PUT = WORK + WORK_ROWS
 _NEAR = PUT + PLACED_STATES  # from here on rows of the table next to a block of places
 ROWS = PUT + 2 * PLACED_STATES
 # the functions found at a place
-_T, _ALONG, _ACROSS, _BODY, _CURVE, _TURN, _CURVE_SLOPE, _TURN_SLOPE = range(STATE_WIDTH)
+_T, _ALONG, _ACROSS, _BODY, _LOG_RATIO, _TURN, _LOG_SLOPE, _TURN_SLOPE = range(STATE_WIDTH)
 _BY_S, _D = STATE_WIDTH, 2 * STATE_WIDTH
 # what the motion does there
-CURVE, CURVE_TILT, TURN_SLOPE, TURN_TILT = range(4)
+LOG_RATIO, LOG_TILT, TURN_SLOPE, TURN_TILT = range(4)
 
 _NEAR_LIMIT = 0.05  # of c − c₀
 _CONSTANTS = 4  # c₀, κ, h₀/δ and another
@@ -166,7 +168,7 @@ def find_functions(room: FloatArray, states: FloatArray, rates: FloatArray, cell
             if end == PART or row_of(room, DELTA, end) != row_of(room, DELTA, begin):
                 _of_one_height(room, states, rates, begin, end)
                 begin = end
-    turn_lines(room, SECTION_WIDTH, FOUND)
+    turn_lines(room, SECTION_WIDTH, AT_PLACE)
 
 
 @inlined
@@ -187,7 +189,7 @@ def pole_at(is_fast: bool, share: float, fixed: Numbers, f: Numbers) -> tuple[fl
     plus, minus = (2.0 - share, share) if is_fast else (share, 2.0 - share)  # 1 + c and 1 − c
     gap = (1.0 - share if is_fast else share - 1.0) - fixed[C0]
     ends = 0.5 * (minus * fixed[LOG_SLOW] - plus * fixed[LOG_FAST])
-    return gap, 0.5 * plus * minus + gap * (f[_CURVE_SLOPE] - ends)
+    return gap, 0.5 * plus * minus + gap * (f[_LOG_SLOPE] - ends)
 
 
 @inlined
@@ -203,9 +205,9 @@ def coefficients_at(
     log_plus, log_minus = (log_far, log_near) if is_fast else (log_near, log_far)
     plus, minus = (far, near) if is_fast else (near, far)
     return (
-        f[_CURVE] - (log_plus * fixed[LOG_SLOW] + log_minus * fixed[LOG_FAST]),
-        k * f[_BY_S + _CURVE] + (log_plus * fixed[TILT_SLOW] + log_minus * fixed[TILT_FAST]),
-        minus * fixed[BEND_SLOW] - plus * fixed[BEND_FAST] + delta * f[_TURN_SLOPE],
+        f[_LOG_RATIO] - (log_plus * fixed[LOG_SLOW] + log_minus * fixed[LOG_FAST]),
+        k * f[_BY_S + _LOG_RATIO] + (log_plus * fixed[TILT_SLOW] + log_minus * fixed[TILT_FAST]),
+        minus * fixed[HEADING_SLOW] - plus * fixed[HEADING_FAST] + delta * f[_TURN_SLOPE],
         log_plus * fixed[TURN_SLOW] + log_minus * fixed[TURN_FAST]
         + (f[_TURN] + delta * (k * f[_BY_S + _TURN])),
     )  # fmt: skip
@@ -251,7 +253,7 @@ def _find_fixed(room: FloatArray, constants: FloatArray) -> None:
         s = 2.0 * delta * delta - 1.0
         result = spline_polynomials(constants, 0, (1.0,), s, _CONSTANTS, CONSTANT_HEIGHTS)
         into_line(room, PUT * BLOCK + _WITH_SLOPES * n, result)
-    turn_lines(room, _WITH_SLOPES, FOUND)
+    turn_lines(room, _WITH_SLOPES, AT_PLACE)
     for n in range(PART):
         speed, slip = row_of(room, V0, n), row_of(room, U0, n)
         rim = abs(row_of(room, ONE_V, n) * row_of(room, A0, n))
@@ -261,7 +263,7 @@ def _find_fixed(room: FloatArray, constants: FloatArray) -> None:
         into_row(room, V0, n, speed / slip)
         into_row(room, A0, n, rim / slip)
         into_row(room, ONE_V, n, slip / speed)
-        delta, result = row_of(room, DELTA, n), rows_of(room, FOUND, _WITH_SLOPES, n)
+        delta, result = row_of(room, DELTA, n), rows_of(room, AT_PLACE, _WITH_SLOPES, n)
         kappa, h0, k = row_of(room, _KAPPA, n), row_of(room, _H0, n), 4.0 * delta
         c0, c0_tilt, k_tilt = result[0], k * result[4], k * result[5]
         h0_tilt = result[2] + delta * (k * result[6])
@@ -291,7 +293,7 @@ def find_facts(
     find_functions(room, states, rates, cells)
     for n in range(PART):
         c, s, delta = row_of(room, V0, n), row_of(room, A0, n), row_of(room, DELTA, n)
-        share, result = row_of(room, SHARE, n), rows_of(room, FOUND, SECTION_WIDTH, n)
+        share, result = row_of(room, SHARE, n), rows_of(room, AT_PLACE, SECTION_WIDTH, n)
         is_fast = row_of(room, FAST, n) > 0.0
         fixed = rows_of(room, FIXED, FIXED_ROWS, n)
         log_near, log_far, _ = logs_of(max(share, TINY), 2.0 - share, 1.0)
@@ -302,7 +304,7 @@ def find_facts(
         into_rows(room, U0, n, (u0, u0 / rate, below * -fixed[ONE_KAPPA]))
         far = 1.0 if abs(gap) > _NEAR_LIMIT else 0.0
         here = (
-            coefficients[CURVE], coefficients[CURVE_TILT], coefficients[TURN_SLOPE] * u0,
+            coefficients[LOG_RATIO], coefficients[LOG_TILT], coefficients[TURN_SLOPE] * u0,
             coefficients[TURN_TILT], deflection * (u0 / rate), far,
         )  # fmt: skip
         into_rows(room, HERE, n, here)

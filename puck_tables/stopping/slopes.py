@@ -67,12 +67,12 @@ def slopes_of(axis: SlipAxis, values: FloatArray) -> Slopes:
     by_u = np.stack([_slopes_at_nodes(axis, own[fast], fast == 1) for fast in range(2)])
     stops = np.concatenate([own, by_u], axis=-1)
     functions = np.concatenate([sides[..., [5, 6]], _similarity_slopes(axis)], axis=-1)
-    of_stops, of_curve = (
+    of_stops, of_functions = (
         by_power(one, powers).transpose(2, 1, 0, 3)  # side, node, power, function
         for one, powers in ((stops, STOP_POWERS), (functions, HEIGHTS))
     )
-    states = np.zeros((*of_curve.shape[:3], STATE_WIDTH))
-    states[:, :, :STOP_POWERS, :4], states[..., 4:] = of_stops[..., :4], of_curve
+    states = np.zeros((*of_functions.shape[:3], STATE_WIDTH))
+    states[:, :, :STOP_POWERS, :4], states[..., 4:] = of_stops[..., :4], of_functions
     rates = of_stops[..., STOP_FUNCTIONS : STOP_FUNCTIONS + RATE_WIDTH]
     padded = np.zeros((*of_stops.shape[:3], STOP_WIDTH))
     padded[..., : of_stops.shape[3]] = of_stops
@@ -86,15 +86,15 @@ def _slopes_at_nodes(axis: SlipAxis, values: FloatArray, fast: bool) -> FloatArr
     k, delta = ratio_at(xi)[:, None], heights()
     large = 1.0 / np.hypot(1.0, k)
     s, c = (large, k * large) if fast else (k * large, large)
-    rate, way, turning = rates_of_ratio(k, fast, delta)
+    rate, norm, turning = rates_of_ratio(k, fast, delta)
     time, along, across, body, length = np.moveaxis(values, -1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         by_u = np.stack([
-            (time - way) / rate,
-            (2.0 * along - delta**2 * s**2 * turning * across - way) / rate + s**2 * along,
+            (time - norm) / rate,
+            (2.0 * along - delta**2 * s**2 * turning * across - norm) / rate + s**2 * along,
             (2.0 * across + turning * along) / rate - (c**2 - s**2) * across,
-            (2.0 * body - way) / rate - c**2 * body,
-            (2.0 * length - way) / rate + s**2 * length,
+            (2.0 * body - norm) / rate - c**2 * body,
+            (2.0 * length - norm) / rate + s**2 * length,
         ], axis=-1)  # fmt: skip
         by_u /= (s * c**2)[..., None]
         by_difference = _by_difference(values, xi, fast) / (s * c**2)[..., None]
@@ -110,8 +110,8 @@ def _by_difference(values: FloatArray, xi: FloatArray, fast: bool) -> FloatArray
     count = len(values)
     by_xi = sum(w * around[j : j + count] for j, w in enumerate(_DIFFERENCE)) / xi[1]
     q = xi * (2.0 - xi)
-    stretch = 16.0 * (1.0 - xi) * q**3 / (2.0 - q**4) ** 2 / ratio_at(xi)  # d ln k/dξ
-    slope: FloatArray = by_xi / (-stretch if fast else stretch)[:, None, None]
+    scale = 16.0 * (1.0 - xi) * q**3 / (2.0 - q**4) ** 2 / ratio_at(xi)  # d ln k/dξ
+    slope: FloatArray = by_xi / (-scale if fast else scale)[:, None, None]
     return slope
 
 
@@ -134,8 +134,9 @@ def _expand(by_u: FloatArray, k: FloatArray, delta: FloatArray, fast: bool, cell
                 powers = [1.0, float(own[f][j]) - 1.0]
             scaled = k[: last + 1] / k[last]
             terms = np.stack([scaled**power for power in powers], axis=-1)
-            fitted = np.linalg.lstsq(terms[first:], by_u[first : last + 1, j, f], rcond=None)[0]
-            by_u[:first, j, f] = terms[:first] @ fitted
+            known = by_u[first : last + 1, j, f]
+            coefficients = np.linalg.lstsq(terms[first:], known, rcond=None)[0]
+            by_u[:first, j, f] = terms[:first] @ coefficients
 
 
 def _similarity_slopes(axis: SlipAxis) -> FloatArray:

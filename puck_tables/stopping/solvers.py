@@ -56,7 +56,7 @@ class BaseSolver:
 
     method = "integrated"
     selections: tuple[Selection, ...] = ()
-    launched = ("launch_vx", "launch_vy", "launch_spin")
+    launch_columns = ("launch_vx", "launch_vy", "launch_spin")
     outputs = tuple(name for name in OUTPUTS if name != "turn_angle")
 
     def __init__(self, shape: Base, tol: float) -> None:
@@ -271,12 +271,12 @@ def integration_of(body: UnitPuck, tol: float, method: Method | None = None) -> 
 
     def attempt(setting: Setting) -> tuple[Integration, ErrorEstimate]:
         stepping = setting.stepping
-        cut = source.friction(setting.accuracy).coefficients
+        coefficients = source.friction(setting.accuracy).coefficients
         coarse = source.coarser(setting.accuracy).coefficients
         finer = stepping.finer(2.0, 0.01, FINEST_LOCAL)
         result, by_finer, by_coarse = (
             Integration(NO_COLUMNS, *how, selection.method, longest=body.longest)
-            for how in ((cut, stepping), (cut, finer), (coarse, stepping))
+            for how in ((coefficients, stepping), (coefficients, finer), (coarse, stepping))
         )
         answer = result.all(probes)[0][:3]
         steps, friction = (

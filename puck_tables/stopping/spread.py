@@ -173,20 +173,20 @@ def _place(name: str, columns: tuple[str, ...]) -> int:
 
 def _root(covariance: npt.ArrayLike, count: int, shape: tuple[int, ...]) -> FloatArray:
     """A matrix R with R Rᵀ = covariance."""
-    given = finite_array("covariance", covariance, "1")
+    matrix = finite_array("covariance", covariance, "1")
     try:
-        np.broadcast_shapes(given.shape, (*shape, count, count))
-        fits = given.shape[-2:] == (count, count) and given.ndim <= len(shape) + 2
+        np.broadcast_shapes(matrix.shape, (*shape, count, count))
+        fits = matrix.shape[-2:] == (count, count) and matrix.ndim <= len(shape) + 2
     except ValueError:
         fits = False
     if not fits:
         raise InputError(
             f"covariance must have the shape {(count, count)}, or one such matrix for each launch, "
-            f"got {given.shape}"
+            f"got {matrix.shape}"
         )
-    scale = np.sqrt(np.maximum(np.diagonal(given, axis1=-2, axis2=-1), 0.0))
+    scale = np.sqrt(np.maximum(np.diagonal(matrix, axis1=-2, axis2=-1), 0.0))
     scale = np.where(scale > 0.0, scale, 1.0)
-    unit = given / scale[..., :, None] / scale[..., None, :]
+    unit = matrix / scale[..., :, None] / scale[..., None, :]
     values, vectors = np.linalg.eigh(0.5 * (unit + np.swapaxes(unit, -1, -2)))
     skew = np.abs(unit - np.swapaxes(unit, -1, -2)).max() if unit.size else 0.0
     if skew > _SYMMETRIC or (values < -_SYMMETRIC).any():

@@ -43,10 +43,8 @@ from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
 from puck_tables.stopping.similarity_lookup import TINY
 from puck_tables.stopping.similarity_rates import (
-    BEND,
+    AT_PLACE,
     C0_TILT,
-    CURVE,
-    CURVE_TILT,
     DECEL,
     DELTA,
     EAST,
@@ -54,16 +52,17 @@ from puck_tables.stopping.similarity_rates import (
     FAST,
     FIXED,
     FIXED_ROWS,
-    FOUND,
+    FROM_LAUNCH,
+    FROM_LAUNCH_ROWS,
     H0,
     H0_TILT,
     HERE,
     HERE_ROWS,
     K_TILT,
     KAPPA,
-    LAUNCHED,
-    LAUNCHED_ROWS,
     LEFT,
+    LOG_RATIO,
+    LOG_TILT,
     MOMENT,
     NORTH,
     ONE_KAPPA,
@@ -73,6 +72,7 @@ from puck_tables.stopping.similarity_rates import (
     RADIUS,
     ROWS,
     SECTION_WIDTH,
+    SENSE,
     SHARE,
     SLIP,
     SPIN,
@@ -105,10 +105,10 @@ from puck_tables.stopping.stop_jacobian import (
 )
 
 # rows of a block for what is found on the way
-_RATES, _RATES_FOUND, _FALL, _GAP, _POLE = WORK, 9, WORK + 2, WORK + 6, WORK + 7
-_LOGS, _LOGS_FOUND = WORK + 9, 3
-_FLOW, _FLOWN, _WAYS = WORK + 12, 4, WORK + 16
-_H0, _T0, _ONE_POLE = FIXED + H0, LAUNCHED + 2, LAUNCHED + 6
+_RATES, _RATE_ROWS, _FALL, _GAP, _POLE = WORK, 9, WORK + 2, WORK + 6, WORK + 7
+_LOGS, _LOG_ROWS = WORK + 9, 3
+_CHANGE, _CHANGE_ROWS, _DIRECTIONS = WORK + 12, 4, WORK + 16
+_H0, _T0, _ONE_POLE = FIXED + H0, FROM_LAUNCH + 2, FROM_LAUNCH + 6
 _T, _ALONG, _T_SLOPE = 0, 1, SECTION_WIDTH - 4  # of what is found at a place
 
 
@@ -134,7 +134,10 @@ def _find_rates(room: FloatArray) -> None:
     """How fast Q, u and the heading change where the states are."""
     for n in range(PART):
         is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
-        fixed, result = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, FOUND, SECTION_WIDTH, n)
+        fixed, result = (
+            rows_of(room, FIXED, FIXED_ROWS, n),
+            rows_of(room, AT_PLACE, SECTION_WIDTH, n),
+        )
         left, delta = row_of(room, LEFT, n), row_of(room, DELTA, n)
         small, large = 0.5 * share, 1.0 - 0.5 * share
         norm = 1.0 / math.sqrt(small * small + large * large)
@@ -143,17 +146,17 @@ def _find_rates(room: FloatArray) -> None:
         t_slope = sine * (cosine * cosine) * result[_T_SLOPE]
         gap, below = pole_at(is_fast, share, fixed, result)
         # all that is divided by in one division: T − ρ T_u is this over what ρ has below it
-        way = t * below + fixed[KAPPA] * (gap * t_slope)
-        one, other = to_go * t, below * way
+        slope = t * below + fixed[KAPPA] * (gap * t_slope)
+        one, other = to_go * t, below * slope
         inverse = 1.0 / ((one * result[_ALONG]) * other)
         one_along = inverse * (one * other)
         inverse *= result[_ALONG]
-        one_below, one_way = inverse * (one * way), below * (below * (inverse * one))
+        one_below, one_slope = inverse * (one * slope), below * (below * (inverse * one))
         inverse *= other
         pole = -fixed[KAPPA] * one_below
         rate = gap * pole
         rates = (
-            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_way, gap,
+            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_slope, gap,
             pole, turn_rate(rate, cosine, sine, delta, one_along, result),
         )  # fmt: skip
         into_rows(room, _RATES, n, rates)
@@ -174,28 +177,28 @@ def _find_coefficients(room: FloatArray) -> None:
     for n in range(PART):
         is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
         fixed, here = rows_of(room, FIXED, FIXED_ROWS, n), rows_of(room, HERE, HERE_ROWS, n)
-        log_near, log_far, log = rows_of(room, _LOGS, _LOGS_FOUND, n)
+        log_near, log_far, log = rows_of(room, _LOGS, _LOG_ROWS, n)
         coefficients = coefficients_at(
             is_fast, share, log_near, log_far, row_of(room, DELTA, n), fixed,
-            rows_of(room, FOUND, SECTION_WIDTH, n),
+            rows_of(room, AT_PLACE, SECTION_WIDTH, n),
         )  # fmt: skip
         pole = row_of(room, _POLE, n)
-        ratio = exp_of(fixed[KAPPA] * log - (coefficients[CURVE] - here[0]))  # of c − c₀
+        ratio = exp_of(fixed[KAPPA] * log - (coefficients[LOG_RATIO] - here[0]))  # of c − c₀
         raised = fixed[C0_TILT] * ratio - fixed[C0_TILT]
-        raised += row_of(room, _GAP, n) * (coefficients[CURVE_TILT] - here[1] - fixed[K_TILT] * log)
+        raised += row_of(room, _GAP, n) * (coefficients[LOG_TILT] - here[1] - fixed[K_TILT] * log)
         turned = coefficients[TURN_TILT] - here[3] + fixed[H0_TILT] * log
         # ρ over that at the launch
         flown = ratio * (pole * row_of(room, _ONE_POLE, n))
         into_rows(
             room,
-            _FLOW,
+            _CHANGE,
             n,
             (flown, raised * (pole * fixed[ONE_KAPPA]), coefficients[TURN_SLOPE], turned),
         )
     for n in range(PART):
         cosine, sine = cosine_sine_of(row_of(room, TURNED, n))
         directions = rotated(cosine, sine, row_of(room, EAST, n), row_of(room, NORTH, n))
-        into_rows(room, _WAYS, n, directions)
+        into_rows(room, _DIRECTIONS, n, directions)
 
 
 @inlined
@@ -208,18 +211,18 @@ def _change(
     ``u0``: of u at the launch; ``elapsed``: of its stop; ``tilt``: of δ.
     """
     speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
-    t, t_slope, t_tilt, rate, one_way, h0, deflection, begun = rates
+    t, t_slope, t_tilt, rate, one_slope, h0, deflection, begun = rates
     flown, raised, turn_slope, turned = coefficients
     _, _, turn0, _, far0, is_far = here
     if tilt == 0.0:
         w, y = elapsed * one_slip, flown * u0
     else:
         w, y = elapsed * one_slip - t_tilt, raised
-    u = (t * y - rate * w) * one_way
-    log_q = (w - t_slope * y) * one_way
+    u = (t * y - rate * w) * one_slope
+    log_q = (w - t_slope * y) * one_slope
     turn = h0 * log_q + turn_slope * u
     if tilt == 0.0:
-        turn = deflection * ((w - t * begun) * one_way) + far0 if is_far > 0.0 else turn - turn0
+        turn = deflection * ((w - t * begun) * one_slope) + far0 if is_far > 0.0 else turn - turn0
     else:
         turn += turned
     v = speed * (log_q - sine * (sine * u))
@@ -248,7 +251,7 @@ def _state_slopes(
     Columns: itself; by v, v across, rω, δ, time.
     """
     speed0, rim0, t0, one_speed, u0, begun, _ = launch_row
-    cosine, sine, slip, one_slip, t_slope, one_way, gap, pole, deflection = moving
+    cosine, sine, slip, one_slip, t_slope, one_slope, gap, pole, deflection = moving
     k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
     from_stop, rate = of_stop(result, delta), gap * pole
     speed, rim = slip * cosine, slip * sine
@@ -256,13 +259,13 @@ def _state_slopes(
     ex, ey = directions
     fx, fy = -around * ey, around * ex
     gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
-    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_way, h0, deflection, begun
+    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_slope, h0, deflection, begun
     common = gone, rates, here, coefficients, own
     # by φ and by δ
     x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
     x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
     # by time: velocity and acceleration
-    log_q = -k * (one_slip * one_way)
+    log_q = -k * (one_slip * one_slope)
     u = -rate * log_q
     ahead, aside = speed * (log_q - sine * (sine * u)), speed * (deflection * log_q)
     p5, q5 = ahead * ex + aside * fx, ahead * ey + aside * fy
@@ -301,14 +304,14 @@ def _find_jacobians(room: FloatArray) -> None:
         around = 1.0 if spin >= 0.0 else -1.0
         own = _state_slopes(
             row_of(room, LEFT, n), row_of(room, DELTA, n), around,
-            rows_of(room, LAUNCHED, LAUNCHED_ROWS, n), row_of(room, _H0, n),
+            rows_of(room, FROM_LAUNCH, FROM_LAUNCH_ROWS, n), row_of(room, _H0, n),
             rows_of(room, HERE, HERE_ROWS, n), rows_of(room, STOP, STOP_ROWS, n),
-            rows_of(room, FOUND, SECTION_WIDTH, n), rows_of(room, _RATES, _RATES_FOUND, n),
-            rows_of(room, _FLOW, _FLOWN, n), rows_of(room, _WAYS, 2, n),
+            rows_of(room, AT_PLACE, SECTION_WIDTH, n), rows_of(room, _RATES, _RATE_ROWS, n),
+            rows_of(room, _CHANGE, _CHANGE_ROWS, n), rows_of(room, _DIRECTIONS, 2, n),
         )  # fmt: skip
         placed = placed_state(
             row_of(room, EAST, n), row_of(room, NORTH, n), around, spin, row_of(room, DECEL, n),
-            row_of(room, UNIT, n), row_of(room, RADIUS, n), row_of(room, BEND, n),
+            row_of(room, UNIT, n), row_of(room, RADIUS, n), row_of(room, SENSE, n),
             row_of(room, SLIP, n), row_of(room, MOMENT, n), own,
         )  # fmt: skip
         into_rows(room, PUT, n, placed)

@@ -25,7 +25,7 @@ from puck_tables.stopping.lookup import HEIGHTS
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
     LAUNCH_ROWS,
-    ORBIT_WIDTH,
+    STOPS_WIDTH,
     TINY,
     cell_of,
     place_after,
@@ -34,14 +34,14 @@ from puck_tables.stopping.similarity_lookup import (
 )
 
 PUCK_ROWS = LAUNCH_COLUMNS + LAUNCH_ROWS  # of a puck: its launch, and what is known of that
-_ROW = ORBIT_WIDTH * HEIGHTS  # numbers of a node
+_ROW = STOPS_WIDTH * HEIGHTS  # numbers of a node
 # rows of a block: those of the puck, of its place on the curve, of the functions, of the state
 _VX, _VY, _SPIN, _DELTA, _DECEL, _RADIUS, _TIME, _X, _Y, _, _BODY, _TURN = range(12)
 _Q, _V, _T, _LOG_N, _SIGN_N, _HEADING, _KAPPA, _TURNING = range(12, PUCK_ROWS)
 _MOMENT, _LEFT, _SHARE, _SWUNG, _FAST, _FIRST, _INSIDE = range(PUCK_ROWS, PUCK_ROWS + 7)
-_FOUND = PUCK_ROWS + 7
-_F_SHARE, _F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN = range(_FOUND, _FOUND + 6)
-_OUT = _FOUND + 6
+_VALUES = PUCK_ROWS + 7
+_F_SHARE, _F_TIME, _F_ALONG, _F_ACROSS, _F_BODY, _F_TURN = range(_VALUES, _VALUES + 6)
+_OUT = _VALUES + 6
 _ROWS = _OUT + STATE_ROWS
 _TO_X, _TO_Y, _TO_HEADING = _OUT + PUCK_X, _OUT + PUCK_Y, _OUT + HEADING
 _TO_ANGLE, _TO_SPEED, _TO_SPIN = _OUT + ORIENTATION, _OUT + SPEED, _OUT + SPIN
@@ -110,7 +110,7 @@ def fill_states_at(
         for n in range(count):
             tilt, at = row_of(room, _DELTA, n), int(row_of(room, _FIRST, n))
             s, weights = 2.0 * tilt * tilt - 1.0, basis(row_of(room, _INSIDE, n))
-            f = spline_values(flat, at, weights, s, ORBIT_WIDTH, HEIGHTS)
+            f = spline_values(flat, at, weights, s, STOPS_WIDTH, HEIGHTS)
             into_row(room, _F_SHARE, n, f[0])
             into_row(room, _F_TIME, n, f[1])
             into_row(room, _F_ALONG, n, f[2])
@@ -170,11 +170,11 @@ def _find_states(room: FloatArray, count: int) -> None:
             slip, turn if spin > 0.0 else -turn, rows_of(room, _F_ALONG, 3, n),
         )  # fmt: skip
         done = (1.0 - left) * (1.0 + left)
-        on_curve = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
+        in_between = (row_of(room, _SIGN_N, n) != 0.0) & (left > 0.0) & (left < 1.0)
         at_rest = row_of(room, _TURN, n) if left == 0.0 else 0.0
-        into_row(room, _TO_X, n, there[0] if on_curve else x * done)
-        into_row(room, _TO_Y, n, there[1] if on_curve else y * done)
-        into_row(room, _TO_HEADING, n, there[2] if on_curve else at_rest)
-        into_row(room, _TO_ANGLE, n, there[3] if on_curve else body * done)
-        into_row(room, _TO_SPEED, n, there[4] if on_curve else left * speed)
-        into_row(room, _TO_SPIN, n, there[5] if on_curve else left * spin)
+        into_row(room, _TO_X, n, there[0] if in_between else x * done)
+        into_row(room, _TO_Y, n, there[1] if in_between else y * done)
+        into_row(room, _TO_HEADING, n, there[2] if in_between else at_rest)
+        into_row(room, _TO_ANGLE, n, there[3] if in_between else body * done)
+        into_row(room, _TO_SPEED, n, there[4] if in_between else left * speed)
+        into_row(room, _TO_SPIN, n, there[5] if in_between else left * spin)

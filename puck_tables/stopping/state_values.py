@@ -126,11 +126,11 @@ def _away_from_pure(
     """
     speed, slip = pucks[LAUNCH_COLUMNS + SPEED0], pucks[LAUNCH_COLUMNS + SLIP]
     rim, unit = np.abs(pucks[5] * pucks[2]), np.maximum(slip, _LEAST)
-    beside = np.ones((LAUNCH_COLUMNS, int(pure.sum())))
-    beside[0], beside[1] = np.maximum((speed / unit)[pure], _TINY), 0.0
-    beside[2], beside[3] = np.maximum((rim / unit)[pure], _TINY), pucks[3, pure]
+    nearby = np.ones((LAUNCH_COLUMNS, int(pure.sum())))
+    nearby[0], nearby[1] = np.maximum((speed / unit)[pure], _TINY), 0.0
+    nearby[2], nearby[3] = np.maximum((rim / unit)[pure], _TINY), pucks[3, pure]
     generic, seen = pucks.copy(), result.copy()
-    generic[:, pure] = table.pucks(launches_in(beside))
+    generic[:, pure] = table.pucks(launches_in(nearby))
     each = np.broadcast_to(which, moments.shape) if which.size else np.arange(moments.size)
     here = np.flatnonzero(pure[each])
     mine = each[here]
@@ -228,5 +228,5 @@ def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArr
         return np.zeros((STATE_ROWS, times.size))
     source = source_of(body)
     run, _ = solve(source, frame.speed, frame.rim, TOL)
-    natural = run.states(frame.unit_times(times, float(run.stop[T]) * frame.time))
-    return np.stack(frame.states(*natural))
+    unit_states = run.states(frame.unit_times(times, float(run.stop[T]) * frame.time))
+    return np.stack(frame.states(*unit_states))

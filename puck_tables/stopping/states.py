@@ -108,9 +108,9 @@ class States(Differentiated, Result):
     @property
     def _arguments(self) -> FloatArray:  # type: ignore[override]
         assert self._wanted is not None
-        launched, which = self._wanted
+        launches, which = self._wanted
         each = each_of(which, self.time.size)
-        return np.concatenate([launched[:, each], self.time.reshape(1, -1)])
+        return np.concatenate([launches[:, each], self.time.reshape(1, -1)])
 
     def explain(self) -> str:
         """How they were got."""
@@ -236,8 +236,8 @@ def states(
     which, moments, shape = moments_of(launches, times)
     slopes = np.empty((moments.size, len(STATE_NAMES), len(MOMENT_NAMES))) if jacobian else None
     if all_plain:
-        found = all_looked_up(chosen, launches, which, moments, threads, slopes)
-        bodies, told = {}, _explained(launches.size, 0)
+        looked_up = all_looked_up(chosen, launches, which, moments, threads, slopes)
+        bodies, words = {}, _explained(launches.size, 0)
     else:
         refuse_times(moments)
         each = each_of(which, moments.size)
@@ -247,28 +247,29 @@ def states(
         longest = max((body.longest for body in bodies.values()), default=2.0)
         if not fits(rows, longest).all():
             raise InputError(TOO_LARGE)
-        found, looked = np.empty((STATE_ROWS, moments.size)), plain[each]
+        looked_up, looked = np.empty((STATE_ROWS, moments.size)), plain[each]
         which_plain = (np.cumsum(plain) - 1)[each[looked]]
         part = None if slopes is None else np.empty((which_plain.size, *slopes.shape[1:]))
-        found[:, looked] = all_looked_up(
+        looked_up[:, looked] = all_looked_up(
             chosen, launches_in(rows[:, plain]), which_plain, moments[looked], threads, part
         )
         others = np.flatnonzero(~plain)
         if slopes is not None:
             slopes[looked] = part
             integrated_jacobians(bodies, rows, others, each, moments, slopes, threads)
-        integrate(bodies, rows, others, each, moments, found, threads)
-        told = _explained(int(plain.sum()), int((~plain).sum()))
+        integrate(bodies, rows, others, each, moments, looked_up, threads)
+        words = _explained(int(plain.sum()), int((~plain).sum()))
     if slopes is None:
-        return states_in(found, moments, launches, which, shape, told)
+        return states_in(looked_up, moments, launches, which, shape, words)
     rows, names = launches.matrix, MOMENT_NAMES
     how: dict[str, Any] = {"table": table, "pressure": pressure, "gyration": gyration}
     if by is not None:
         rows = by.chained(launches, slopes, each_of(which, moments.size))
         names, how["gravity"] = (*FRICTION_NAMES, "time"), by.gravity
     return states_in(
-        found, moments, launches, which, shape, told, slopes.reshape(*shape, *slopes.shape[1:]),
-        (rows, which), partial(states, threads=threads, **how), math.inf if bodies else 1.0, names,
+        looked_up, moments, launches, which, shape, words,
+        slopes.reshape(*shape, *slopes.shape[1:]), (rows, which),
+        partial(states, threads=threads, **how), math.inf if bodies else 1.0, names,
     )  # fmt: skip
 
 

@@ -40,12 +40,12 @@ from puck_tables.stopping.lookup import HEIGHTS, SlipAxis, heights, ratio_at
 from puck_tables.stopping.similarity import limits, regular_parts
 from puck_tables.stopping.similarity_lookup import (
     BODY,
-    CURVE_FUNCTION,
-    CURVE_WIDTH,
     HEADING0,
     KAPPA,
     LENGTH,
+    LOG_FUNCTION,
     LOG_N,
+    MOTION_WIDTH,
     T_LAUNCH,
     TURN_FUNCTION,
     TURNING,
@@ -62,7 +62,7 @@ _CHUNK = 64  # launches at once, of integrations
 K = TypeVar("K", bound=StopValues)  # the kind that is made
 NAMES = StopValues.quantities
 # launches drawn; heights, both ends and between nodes
-_RANDOM, _CURVE_HEIGHTS = 1500, (0.0, 0.05, 0.3, 0.62, 0.9, 0.99, 1.0)
+_RANDOM, _MOTION_HEIGHTS = 1500, (0.0, 0.05, 0.3, 0.62, 0.9, 0.99, 1.0)
 _MOTIONS = 400  # on which the equations are judged, each by 14 quadratures of friction
 _REFINED = 3  # places looked at in a cell
 _NODES = chebyshev.chebpts1(14)
@@ -71,7 +71,7 @@ EQUATION_FACTOR = 4.0
 # largest error × cells⁴ of stops and of the curve, about twice what was measured, and the errors of
 # the polynomials in δ²
 _CEILING, _POLYNOMIAL = 1.6, 5e-12
-_CURVE_CEILING, _CURVE_POLYNOMIAL = 10.0, 2e-10  # of the curve
+_MOTION_CEILING, _MOTION_POLYNOMIAL = 10.0, 2e-10  # of the curve
 
 
 def launch_points(
@@ -178,17 +178,17 @@ def measured(table: StopValues) -> Accuracy:
     errors = np.abs(looked_up(table, u, delta) - reference).T
     stops = Accuracy.of(errors, phi, delta, None)
     between = SlipAxis(_REFINED * table.axis.cells)
-    deviation = np.empty((2, len(_CURVE_HEIGHTS), between.size))
-    for row, one in enumerate(_CURVE_HEIGHTS):
+    deviation = np.empty((2, len(_MOTION_HEIGHTS), between.size))
+    for row, one in enumerate(_MOTION_HEIGHTS):
         parts = regular_parts(between, one)
         deviation[0, row] = (
-            _similarity_between(table, CURVE_FUNCTION, one) - limits(one).kappa * parts[:, 0]
+            _similarity_between(table, LOG_FUNCTION, one) - limits(one).kappa * parts[:, 0]
         )
         deviation[1, row] = _similarity_between(table, TURN_FUNCTION, one) - parts[:, 1]
-    nodes, height = np.broadcast_arrays(between.phi(), np.array(_CURVE_HEIGHTS)[:, None])
-    curve = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
+    nodes, height = np.broadcast_arrays(between.phi(), np.array(_MOTION_HEIGHTS)[:, None])
+    accuracy = Accuracy.of(np.abs(deviation).reshape(2, -1), nodes.ravel(), height.ravel(), None)
     both = {
-        field: getattr(stops, field) + getattr(curve, field)
+        field: getattr(stops, field) + getattr(accuracy, field)
         for field in ("largest", "rms", "p999", "at_phi", "at_second")
     }
     order = 0.0 if coarse is None else math.log2(coarse.max() / stops.largest[0])
@@ -197,7 +197,7 @@ def measured(table: StopValues) -> Accuracy:
 
 def _similarity_between(table: StopValues, function: int, delta: float) -> FloatArray:
     """κR or S at the nodes of an axis three times as fine, as the table's splines give them."""
-    c = table.launch_coefficients.reshape(2, -1, HEIGHTS, CURVE_WIDTH)[..., function]
+    c = table.launch_coefficients.reshape(2, -1, HEIGHTS, MOTION_WIDTH)[..., function]
     at_height = c @ (2.0 * delta**2 - 1.0) ** np.arange(HEIGHTS)
     n = table.axis.cells
     sides = np.empty((2, _REFINED * n + 1))
@@ -227,8 +227,8 @@ def judged(table: StopValues, progress: Progress | None) -> CheckReport:
         errors = (looked_up(table, u, delta) - exact_stops(u, delta)).T
         checks += _checks(route, NAMES[:STOPS], errors, u, delta, allowed)
     step(1)
-    of_curve = _CURVE_CEILING / cells**4 + _CURVE_POLYNOMIAL
-    checks += _equations(table, rng, allowed, of_curve) + _at_nodes(table, of_curve)
+    of_functions = _MOTION_CEILING / cells**4 + _MOTION_POLYNOMIAL
+    checks += _equations(table, rng, allowed, of_functions) + _at_nodes(table, of_functions)
     step(2)
     checks += _elementary(table, allowed)
     step(3)
@@ -258,9 +258,9 @@ def _equations(
     log_q = -half * _integrals(1.0 / rate)
     psi = -half * _integrals(turn / rate)
     q, end_q = np.exp(log_q[:-1]), np.exp(log_q[-1])
-    way = q * norm / (rho.parallel * rate)
-    time = half * _integrals(way)[-1]
-    place = half * _integrals(q * way * np.sqrt(cos2) * np.exp(1j * psi[:-1]))[-1]
+    duration = q * norm / (rho.parallel * rate)
+    time = half * _integrals(duration)[-1]
+    place = half * _integrals(q * duration * np.sqrt(cos2) * np.exp(1j * psi[:-1]))[-1]
     first, last = looked_up(table, start, delta), looked_up(table, end, delta)
     turned = np.exp(1j * psi[-1])
     rest_time = first[:, 0] - time - end_q * last[:, 0]
@@ -268,12 +268,12 @@ def _equations(
         first[:, 1] + 1j * first[:, 2] - place
         - end_q**2 * turned * (last[:, 1] + 1j * last[:, 2])
     )  # fmt: skip
-    curve = _along_motion(table, end, delta) - _along_motion(table, start, delta)
+    along = _along_motion(table, end, delta) - _along_motion(table, start, delta)
     stops = np.stack([rest_time, rest_place.real, rest_place.imag])
-    by_way = np.stack([curve[0] - log_q[-1], curve[1] - psi[-1]])
+    rises = np.stack([along[0] - log_q[-1], along[1] - psi[-1]])
     return [
         *_checks("equation", NAMES[:3], stops, start, delta, EQUATION_FACTOR * allowed),
-        *_checks("equation", NAMES[STOPS:], by_way, start, delta, EQUATION_FACTOR * by_similarity),
+        *_checks("equation", NAMES[STOPS:], rises, start, delta, EQUATION_FACTOR * by_similarity),
     ]
 
 

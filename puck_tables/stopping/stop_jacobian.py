@@ -136,10 +136,10 @@ def placed_state(
     duration, elapsed = slip * unit, time * unit
     place = slip * duration
     frame = elapsed, around, east, north, spin, radius
-    way, moving = (place, duration, slip, unit * place), (slip, 1.0, decel, 0.0)
+    lengths, moving = (place, duration, slip, unit * place), (slip, 1.0, decel, 0.0)
     return (
-        *_line(own[:6], *way, *frame),
-        *_line(own[6:12], *way, *frame),
+        *_line(own[:6], *lengths, *frame),
+        *_line(own[6:12], *lengths, *frame),
         *_turn(own[12:18], deflection * place, deflection * duration, deflection * slip, unit,
         *frame, deflection), *_line(own[18:24], *moving, *frame),
         *_line(own[24:30], *moving, *frame),
@@ -209,17 +209,17 @@ STOP_ROWS = 5  # what is differentiated: time, x, y, path, body angle
 LAUNCH_COLUMNS = 6  # vx, vy, ω, δ, J, r
 
 # what a place on the curve says of a stop: five functions, D of each, and derivatives by δ
-T, ALONG, ACROSS, TURNED, WAY = range(STOP_FUNCTIONS)
+T, ALONG, ACROSS, TURNED, LENGTH = range(STOP_FUNCTIONS)
 D, BY_HEIGHT = STOP_FUNCTIONS, 2 * STOP_FUNCTIONS
-STOP_FOUND = 3 * STOP_FUNCTIONS
+STOP_VALUES = 3 * STOP_FUNCTIONS
 # of a stop in the frame of its launch: value, by v, by a, by δ; J = 1
 OWN_COLUMNS = 4  # of such a row: the four above
 OWN = STOP_ROWS * OWN_COLUMNS
 STOP_ROW = STOP_POWERS * STOP_WIDTH
 _OUT = STOP_ROWS * LAUNCH_COLUMNS
 # rows of a block behind those of the launches and their places
-_FOUND = PLACED
-_PUT = PLACED + STOP_FOUND
+_VALUES = PLACED
+_PUT = PLACED + STOP_VALUES
 _ROWS = _PUT + 2 * _OUT
 
 # More than caches hold, but less than what C libraries ask of the system anew each time (32 MiB):
@@ -251,7 +251,7 @@ def stop_by_speeds(
     t, dt, t_tilt = result[T], result[D + T], result[BY_HEIGHT + T]
     x, dx, x_tilt = result[ALONG], result[D + ALONG], result[BY_HEIGHT + ALONG]
     y, dy, y_tilt = result[ACROSS], result[D + ACROSS], result[BY_HEIGHT + ACROSS]
-    w, dw, w_tilt = result[WAY], result[D + WAY], result[BY_HEIGHT + WAY]
+    w, dw, w_tilt = result[LENGTH], result[D + LENGTH], result[BY_HEIGHT + LENGTH]
     b, db, b_tilt = result[TURNED], result[D + TURNED], result[BY_HEIGHT + TURNED]
     return (
         slip * t, c * (t - s * dt), s * t + c2 * dt, slip * t_tilt,
@@ -321,11 +321,11 @@ def fill_stop_jacobians(
         for n in range(count):
             first, tilt = int(row_of(room, FIRST, n)), row_of(room, DELTA, n)
             result = stop_functions(flat, first, basis(row_of(room, INSIDE, n)), tilt)
-            into_rows(room, _FOUND, n, result)
+            into_rows(room, _VALUES, n, result)
         for n in range(count):
             speed, slip = row_of(room, SPEED, n), row_of(room, SLIP, n)
             c, s = speed / slip, abs(row_of(room, EDGE, n)) / slip
-            result = rows_of(room, _FOUND, STOP_FOUND, n)
+            result = rows_of(room, _VALUES, STOP_VALUES, n)
             own = stop_by_speeds(c, s, 1.0, c, s, row_of(room, DELTA, n), result)
             placed = placed_stop(
                 row_of(room, VX, n), row_of(room, VY, n), row_of(room, SPIN, n),

@@ -131,9 +131,9 @@ class StopWork(Work):
                     plain = delta[~other]
                     heights = np.append(heights, plain[0])
                     counts = np.append(counts, plain.size)
-                mine_found = sought.setdefault(kind, {})
+                of_kind = sought.setdefault(kind, {})
                 for height, count in zip(heights.tolist(), counts.tolist(), strict=True):
-                    mine_found[height] = mine_found.get(height, 0) + each * count
+                    of_kind[height] = of_kind.get(height, 0) + each * count
                 self._refuse_many(sought)
         return {
             kind: (np.array(list(one)), np.array(list(one.values()), np.int64))
@@ -217,8 +217,8 @@ class StopWork(Work):
             for kind, mine in kinds:
                 out[:, mine], status[mine] = self._solver(kind).all(numbers[:6, mine])
         sought: Columns = {COLUMN[name]: one[name] for name in self.launches.spreads}
-        found = zip(OUTPUTS, out, strict=True)
-        sought |= {name: row for name, row in found if name in self.columns}
+        values = zip(OUTPUTS, out, strict=True)
+        sought |= {name: row for name, row in values if name in self.columns}
         return sought | {self.code: status}
 
     @property
@@ -236,8 +236,8 @@ class StopWork(Work):
 
     def labelled(self, columns: Columns) -> Dataset:
         """The stops over what ranges; the rest as attributes."""
-        axes, given = self.launches.variables()
-        labels = dict(given)
+        axes, variables = self.launches.variables()
+        labels = dict(variables)
         for name in self.columns:
             labels[name] = variable(name, columns[name], self.launches.dims)
         labels["status"] = variable(
@@ -386,5 +386,5 @@ def _refuse_of_round(puck: Any, names: Container[str]) -> None:
 
 def _done(puck: Any, launches: Population, by: By, how: Doing) -> Result:
     """The result, or what stands in the store."""
-    found: Result = finish(StopWork(launches, puck, by, how.chunk), how)
-    return found
+    result: Result = finish(StopWork(launches, puck, by, how.chunk), how)
+    return result

@@ -40,8 +40,8 @@ from puck_tables.stopping.lookup import (
 from puck_tables.stopping.similarity import InverseSolution, limits
 from puck_tables.stopping.similarity_lookup import (
     LAUNCH_COLUMNS,
-    ORBIT_WIDTH,
     REGULAR,
+    STOPS_WIDTH,
     TURN_POWERS,
     TURN_STEP,
 )
@@ -278,7 +278,7 @@ class StopValues(Table):
     def state_coefficients(self) -> FloatArray:
         """What :mod:`puck_tables.stopping.state_lookup` reads."""
         values = by_power(self.inverse.splined(with_time=True))
-        padded = np.zeros((*values.shape[:3], ORBIT_WIDTH))
+        padded = np.zeros((*values.shape[:3], STOPS_WIDTH))
         padded[..., : values.shape[3]] = values
         return side_by_side(padded)
 

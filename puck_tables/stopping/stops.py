@@ -62,7 +62,7 @@ class Stops(Differentiated, Result):
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STOP_NAMES
     JACOBIAN_COLUMNS: tuple[str, ...] = LAUNCH_NAMES
-    _told: dict[str, Any]  # of results that were pickled
+    _described: dict[str, Any]  # of results that were pickled
 
     def __init__(
         self, solver: SolverPerHeight | BaseSolver, launches: Launches, threads: int | None,
@@ -71,7 +71,7 @@ class Stops(Differentiated, Result):
     ) -> None:  # fmt: skip
         time, place, status, self._mark, self._rest = solver.first(launches, threads)
         self._solver: SolverPerHeight | BaseSolver | None = solver
-        self._launched, self._outputs = solver.launched, solver.outputs
+        self._launch_columns, self._outputs = solver.launch_columns, solver.outputs
         self._launches, self._threads = launches, threads
         self.stop_time: FloatArray = time.reshape(launches.shape)
         self.stop_position: FloatArray = place.reshape(*launches.shape, 2)
@@ -89,19 +89,23 @@ class Stops(Differentiated, Result):
 
     def __getstate__(self) -> dict[str, Any]:
         """The results alone: tables stay where they are."""
-        told = {"method": self.method, "selections": self.selections, "explanation": self.explain()}
+        words = {
+            "method": self.method,
+            "selections": self.selections,
+            "explanation": self.explain(),
+        }
         kept = {"_rest": self._others, "_launches": self._own_launches}
-        return {**self.__dict__, **kept, "_solver": None, "_told": told}
+        return {**self.__dict__, **kept, "_solver": None, "_described": words}
 
     @property
     def method(self) -> str:
         """'look-up', 'integrated', or both where heights differ."""
-        return self._told["method"] if self._solver is None else self._solver.method
+        return self._described["method"] if self._solver is None else self._solver.method
 
     @property
     def selections(self) -> tuple[Selection, ...]:
         """What was selected for the tolerance; empty with a stop table of one's own."""
-        return self._told["selections"] if self._solver is None else self._solver.selections
+        return self._described["selections"] if self._solver is None else self._solver.selections
 
     @property
     def _own_launches(self) -> Launches:
@@ -156,17 +160,21 @@ class Stops(Differentiated, Result):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
-        return str(self._told["explanation"]) if self._solver is None else self._solver.explanation
+        return (
+            str(self._described["explanation"])
+            if self._solver is None
+            else self._solver.explanation
+        )
 
     def dataset(self) -> Dataset:
         """Launches and their stops, over as many axes as the launches have."""
         shape = self.status.shape
         dims = tuple(f"axis_{n}" for n in range(len(shape))) or ("launch",)
         shape = shape or (1,)
-        launches = dict(zip(self._launched, self._own_launches.matrix, strict=False))
+        launches = dict(zip(self._launch_columns, self._own_launches.matrix, strict=False))
         stops = (self.stop_time, self.stop_x, self.stop_y, *self._others)
-        found = dict(zip(OUTPUTS, stops, strict=True))
-        columns = {**launches, **{name: found[name] for name in self._outputs}}
+        values = dict(zip(OUTPUTS, stops, strict=True))
+        columns = {**launches, **{name: values[name] for name in self._outputs}}
         columns |= derived(columns)
         variables = {n: variable(n, row.reshape(shape), dims) for n, row in columns.items()}
         status = self.status.reshape(shape)
@@ -322,13 +330,13 @@ def states_on_base(
     unit = np.where(slip > 0.0, slip / rows[4], 1.0)
     base, local = puck.packed_base, local_error(STATES_TOL)
     in_order = (moments / unit[each])[order]
-    _, found, status = followed(base, rows, local, in_order, ends, threads)
+    _, states, status = followed(base, rows, local, in_order, ends, threads)
     if status.any():
         raise InputError(TOO_LARGE)
     out = np.empty((STATE_ROWS, moments.size))
-    out[:, order] = found.T
-    told = f"{launches.size} pucks integrated, to 1e-9 of Q and Q^2/(f g).\n{WHY_INTEGRATED}"
-    return states_in(out, moments, launches, which, shape, told)
+    out[:, order] = states.T
+    explanation = f"{launches.size} pucks integrated, to 1e-9 of Q and Q^2/(f g).\n{WHY_INTEGRATED}"
+    return states_in(out, moments, launches, which, shape, explanation)
 
 
 def _launches(puck: PuckSpec, velocity: npt.ArrayLike, spin: npt.ArrayLike) -> Launches:

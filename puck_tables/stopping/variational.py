@@ -78,10 +78,10 @@ def slope_section(body: UnitPuck) -> SlopeSection:
         return unit_stops(friction, cosine, np.sin(phi)).reshape(phi.size, -1)
 
     for spline, xi, off in refinements(at, sides, False, _COARSEST_CELLS, _FINEST_CELLS):
-        found = SlopeSection(spline.coefficients, off.max(axis=2) <= SPLINE_ERROR)
-        if found.good[:, xi > _NEAR].all():
+        section = SlopeSection(spline.coefficients, off.max(axis=2) <= SPLINE_ERROR)
+        if section.good[:, xi > _NEAR].all():
             break
-    return found
+    return section
 
 
 def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = None) -> FloatArray:
@@ -192,14 +192,14 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
         )  # fmt: skip
 
     run_chunks(work, u.size, _CHUNK)
-    found = rows.reshape(u.size, -1, KEPT)[:, :, _STOP]
-    value, by_u = found[:, 0], found[:, 1]
+    stops = rows.reshape(u.size, -1, KEPT)[:, :, _STOP]
+    value, by_u = stops[:, 0], stops[:, 1]
     out = np.empty((u.size, 5, 4))
     out[:, :, 0] = value
     out[:, 1:3, 0] /= c[:, None]
     out[:, :, 1] = _POWERS * c[:, None] * value - by_u / c[:, None]
     out[:, :, 2] = _POWERS * s[:, None] * value + by_u / s[:, None]
-    out[:, :, 3] = found[:, 2]
+    out[:, :, 3] = stops[:, 2]
     return out
 
 

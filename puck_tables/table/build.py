@@ -70,20 +70,20 @@ def built(
                 f"accuracy = {accuracy:g} and cells = {cells} both fix the grid: give one of them"
             )
         table = at(cells)
-        found = measured(table)
-        promised = rounded_up(max(1.25 * found.worst, goal.finest), 2)
-        return replace(table, accuracy=found, tolerance=promised)
+        errors = measured(table)
+        promised = rounded_up(max(1.25 * errors.worst, goal.finest), 2)
+        return replace(table, accuracy=errors, tolerance=promised)
     wanted = checked_accuracy(accuracy, goal.default, goal.finest, goal.units)
     # even, so that every other node is a grid as well: it tells the order
     cells = max(_LEAST_CELLS, 2 * math.ceil(0.5 * (goal.constant / wanted) ** 0.25))
     while cells <= goal.most_cells:
         table = at(cells)
-        found = measured(table)
-        if goal.safety * found.worst <= wanted:
-            return replace(table, accuracy=found, tolerance=wanted)
+        errors = measured(table)
+        if goal.safety * errors.worst <= wanted:
+            return replace(table, accuracy=errors, tolerance=wanted)
         cells = 2 * math.ceil(0.55 * cells)
     raise AccuracyError(
         f"an accuracy of {wanted:g} would take more than {goal.most_cells} cells: "
-        f"{found.worst:.1e} is what so many about give",
-        reachable=found.worst,
+        f"{errors.worst:.1e} is what so many about give",
+        reachable=errors.worst,
     )

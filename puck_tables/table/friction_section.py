@@ -36,7 +36,7 @@ from puck_tables.table.spline_fit import height_terms, ratios_at
 from puck_tables.table.table import Progress
 from puck_tables.table.table_store import fetch
 
-FLOW_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
+RATES_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8
 DEFAULT_ACCURACY, FINEST_ACCURACY = 1e-9, 5e-13  # truth itself is good to 1e-13
 _NODE_ERROR = 1e-10  # how well the law is known at a node
 AT_THE_LIMIT = 1e-6  # relative: so close to it, a section says that motions tend there
@@ -66,7 +66,7 @@ class FrictionSlopes:
 
 
 @lru_cache(maxsize=64)
-def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) -> FrictionSlopes:
+def friction_slopes_of(law: Law, delta: float, accuracy: float = RATES_ACCURACY) -> FrictionSlopes:
     """Tabulate the friction of one puck with its derivatives by the height.
 
     ``delta``: dimensionless height 2fh/r; ``accuracy``: the largest error of a friction ratio.
@@ -77,8 +77,8 @@ def friction_slopes_of(law: Law, delta: float, accuracy: float = FLOW_ACCURACY) 
     [1.0, 0.25, 0.875, 0.0, 0.25, -0.25]
     """
     sides = sides_of(lines_of(law, delta)[::-1])
-    found = slip_spline(lambda phi: slopes_at(law, phi, delta), sides, accuracy, even=True)
-    return FrictionSlopes(found, delta, float(found.error[:RATIOS].max()))
+    spline = slip_spline(lambda phi: slopes_at(law, phi, delta), sides, accuracy, even=True)
+    return FrictionSlopes(spline, delta, float(spline.error[:RATIOS].max()))
 
 
 def slopes_of_table(table: ResultantTable, delta: float) -> FrictionSlopes:

@@ -105,9 +105,11 @@ class ResultantTable(LawTable):
     def columns(self) -> FloatArray:
         """What :mod:`puck_tables.kernels.quadratic` reads, fitted at first use; read-only."""
         terms = height_terms(self.values, self.heights)
-        fitted = np.ascontiguousarray(sided_coefficients(self.axis.by_side(terms), True) / 6.0)
-        fitted.flags.writeable = False
-        return fitted
+        coefficients = np.ascontiguousarray(
+            sided_coefficients(self.axis.by_side(terms), True) / 6.0
+        )
+        coefficients.flags.writeable = False
+        return coefficients
 
     def section(self, delta: float) -> FloatArray:
         """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.
@@ -247,8 +249,8 @@ class ResultantTable(LawTable):
             return cls.tabulated(law, cells, tell)
 
         goal = _EXACT if law.can_lift else _BY_QUADRATURE
-        found = built(at, lambda table: _measured(table, probes, tell), goal, accuracy, cells)
-        return cast(Self, found)
+        result = built(at, lambda table: _measured(table, probes, tell), goal, accuracy, cells)
+        return cast(Self, result)
 
     @classmethod
     def tabulated(cls, law: Law, cells: int, tell: Tell | None = None) -> Self:

@@ -46,24 +46,24 @@ def tall_resultants(phi: FloatArray, delta: float) -> Resultants:
     if delta > one_sided.FOLD_DELTA:
         return one_sided.resultants(phi, delta)
     direction = slip_direction(phi)
-    found = np.stack(moment_balance(closed_form.integrals(phi), direction, delta))
+    resultants = np.stack(moment_balance(closed_form.integrals(phi), direction, delta))
     opened = np.flatnonzero(delta > critical_delta(phi))
 
     def work(start: int, stop: int) -> None:
-        from puck_tables.kernels.one_sided_kernel import FOUND, SPIN, fill_balances
+        from puck_tables.kernels.one_sided_kernel import BALANCE, SPIN, fill_balances
 
         some = opened[start:stop]
         ratio, fast = direction.ratio[some], direction.fast_spin[some]
         guess = np.stack(guessed_chord(ratio, fast, np.full(some.size, delta)))
-        out = np.empty((some.size, FOUND))
+        out = np.empty((some.size, BALANCE))
         lost = fill_balances(ratio, fast, delta, guess, LINE_RULE, SEGMENT_RULE, out)
-        found[:, some] = out[:, : SPIN + 1].T
+        resultants[:, some] = out[:, : SPIN + 1].T
         if lost:
             left = some[np.isnan(out[:, 0])]
-            found[:, left] = np.stack(one_sided.resultants(phi[left], delta))
+            resultants[:, left] = np.stack(one_sided.resultants(phi[left], delta))
 
     run_chunks(work, opened.size, _CHUNK)
-    return Resultants(*found)
+    return Resultants(*resultants)
 
 
 def lines_of(law: Law, delta: float) -> tuple[float, ...]:
@@ -80,10 +80,10 @@ def lines_of(law: Law, delta: float) -> tuple[float, ...]:
     refuse_height(law, delta)
     if not law.can_lift:
         return law.edges
-    opening, bend = opening_angle(delta), _sharpest_corner(delta)
+    opening, corner = opening_angle(delta), _sharpest_corner(delta)
     if any(abs(opening - math.atan2(1.0, e)) <= _SAME_LINE for e in law.edges):
         opening = 0.0
-    between = [1.0 / math.tan(line) for line in (opening, bend) if line > 0.0]
+    between = [1.0 / math.tan(line) for line in (opening, corner) if line > 0.0]
     return tuple(sorted([*law.edges, *between]))
 
 

@@ -74,12 +74,12 @@ def tabulated(
     parts = [
         FilledPatch(patch, law, own, largest or 1.0, n, rules) for n, patch in enumerate(patches)
     ]
-    share, told = 0.0, 0.0
+    share, last = 0.0, 0.0
 
     def tell(*_: int) -> None:
-        nonlocal share, told
-        if progress is not None and time.monotonic() >= told + _BETWEEN_WORDS:
-            told = time.monotonic()
+        nonlocal share, last
+        if progress is not None and time.monotonic() >= last + _BETWEEN_WORDS:
+            last = time.monotonic()
             share = max(share, sum(part.share(goal) for part in parts) / len(parts))
             progress(max(int(1000 * share), 1), 1000)
 

@@ -117,10 +117,10 @@ class RayPatch(_InSlab):
         begin, end = self.breaks[self.slab : self.slab + 2]
         U = begin + (end - begin) * (xi**self.grade if self.slab == 0 else xi)
         near, far = zeta**4, (1.0 - zeta) ** 4
-        way = (self.low * far + self.high * near) / (near + far)
-        U, way = np.broadcast_arrays(U, way)
-        ratio = (1.0 - np.abs(way)) / (1.0 + np.abs(way))
-        return SlipDirection(ratio, way < 0.0), U * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
+        middle = (self.low * far + self.high * near) / (near + far)
+        U, middle = np.broadcast_arrays(U, middle)
+        ratio = (1.0 - np.abs(middle)) / (1.0 + np.abs(middle))
+        return SlipDirection(ratio, middle < 0.0), U * np.sqrt(1.0 + ratio**2) / (1.0 + ratio)
 
 
 def is_pile(law: object, load: RoundLoad) -> bool:
@@ -206,15 +206,15 @@ def breaks_of(
                 f"got {scale:g}"
             )
         corners = np.union1d(corners, [scale])
-    found = [0.0]
+    breaks = [0.0]
     for corner in (*corners[corners < (1.0 - _SAME) * top], top):
-        if corner <= found[-1] * (1.0 + _SAME):
+        if corner <= breaks[-1] * (1.0 + _SAME):
             continue
-        if found[-1] > 0.0:
-            steps = int(np.ceil(np.log(corner / found[-1]) / np.log(_STEEPEST)))
-            found += np.geomspace(found[-1], corner, steps + 1)[1:-1].tolist()
-        found.append(float(corner))
-    return np.array(found)
+        if breaks[-1] > 0.0:
+            steps = int(np.ceil(np.log(corner / breaks[-1]) / np.log(_STEEPEST)))
+            breaks += np.geomspace(breaks[-1], corner, steps + 1)[1:-1].tolist()
+        breaks.append(float(corner))
+    return np.array(breaks)
 
 
 def _corners(law: SpeedLaw) -> FloatArray:

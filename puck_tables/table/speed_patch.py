@@ -227,11 +227,11 @@ class FilledPatch:
         """Errors (4, probes) of the spline, and what is missed along ξ and ζ by half the nodes."""
         xi, zeta = self._probes
         direction, self.speeds = self.patch.place(xi, zeta)
-        found = np.empty((xi.size, 4))
+        values = np.empty((xi.size, 4))
         along, across = self.cells
-        fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, found)
+        fill_patch(quintic_coefficients(self.values).ravel(), along, across, xi, zeta, values)
         truth = truth_at(self._law, self._load, self.patch.top, direction, self.speeds)
-        self.errors = np.abs(self._weights(direction) * (found - truth))
+        self.errors = np.abs(self._weights(direction) * (values - truth))
         self.phi = np.arctan2(np.sqrt(direction.sin_squared), np.sqrt(direction.cos_squared))
         self.worst = float(self.errors.max())
         nodes = [np.arange(n + 1) / n for n in self.cells]

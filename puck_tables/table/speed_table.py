@@ -335,12 +335,12 @@ class SpeedTable(Table):
         self, count: int, rng: np.random.Generator
     ) -> tuple[FloatArray, FloatArray]:
         """φ and v + r|ω| at so many random places of each patch."""
-        found = []
+        values = []
         for patch in self.patches:
             direction, Q = patch.place(*rng.random((2, count)))
             cosine, sine = np.sqrt(direction.cos_squared), np.sqrt(direction.sin_squared)
-            found.append((np.arctan2(sine, cosine), Q * (cosine + sine)))
-        phi, fastest = np.concatenate(found, axis=1)
+            values.append((np.arctan2(sine, cosine), Q * (cosine + sine)))
+        phi, fastest = np.concatenate(values, axis=1)
         return phi, fastest
 
     # the record of the kind

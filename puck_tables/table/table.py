@@ -198,8 +198,8 @@ class Table(ABC):
         (2e-11, 1e-10)
         """
         instance("kind", kind, str)
-        found: Self = _shipped(kind if cls is Table else cls.kind)
-        return found
+        table: Self = _shipped(kind if cls is Table else cls.kind)
+        return table
 
     @classmethod
     def read(cls, content: bytes, source: str) -> Self:

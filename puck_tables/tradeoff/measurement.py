@@ -56,8 +56,8 @@ class TradeOff(Result):
             row = [getattr(method, name) for method in self.methods]
             values = row if isinstance(row[0], str) else np.asarray(row)
             columns[name] = variable(name, values, dims)
-        told = [f"{method.question}: {method.name}" for method in self.methods]
-        return Dataset({"contender": variable("contender", told, dims)}, columns, {
+        names = [f"{method.question}: {method.name}" for method in self.methods]
+        return Dataset({"contender": variable("contender", names, dims)}, columns, {
             "title": "Accuracy against cost of methods to friction resultants, stops and states",
             "repeats": self.repeats, "seconds": self.seconds,
             **{f"machine_{k}": v for k, v in self.machine.items()},

@@ -230,12 +230,12 @@ def _integrated(body: ThrownBody, tol: float) -> Made:
         spin: Any = launches[2]
         if body.law is None:
             stops = body.puck.stop(velocity, spin, tol=tol, threads=1)
-            found = stops.stop_time, stops.stop_x, stops.stop_y
+            numbers = stops.stop_time, stops.stop_x, stops.stop_y
         else:
             scene = Scene(body.puck, Floor(law=body.law), Launch(velocity, spin=spin), tol=tol)
             ends = scene.sweep(threads=1)
-            found = ends.end_time, ends.x, ends.y
-        return np.stack(found) / body.units(launches)
+            numbers = ends.end_time, ends.x, ends.y
+        return np.stack(numbers) / body.units(launches)
 
     return None, run
 

@@ -84,8 +84,8 @@ def random_points(count: int) -> Question:
     phi = rng.uniform(0.0, 0.5 * np.pi, count)
     near, quarter, half = 10.0 ** -rng.uniform(0.2, 12.0, count), 0.25 * np.pi, 0.5 * np.pi
     sides = [near, quarter - near, quarter + near, half - near]
-    beside = np.choose(rng.integers(0, 4, count), sides)
-    phi = np.where(np.arange(count) % 2 == 0, phi, beside.clip(0.0, half))
+    nearby = np.choose(rng.integers(0, 4, count), sides)
+    phi = np.where(np.arange(count) % 2 == 0, phi, nearby.clip(0.0, half))
     delta = rng.choice([0.0, 1.0, -1.0], count, p=[0.1, 0.1, 0.8])
     delta = np.where(delta < 0.0, rng.random(count), delta)
     truth = np.stack(moment_balance(quadrature.integrals(phi), slip_direction(phi), delta))

@@ -18,7 +18,14 @@ from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import layout
 from puck_tables.world.by_hand import with_integrated
-from puck_tables.world.engine_state import LAUNCHED, N_HISTORY, N_LAUNCHES, N_PIECES, Engine, Whole
+from puck_tables.world.engine_state import (
+    LAUNCH_DISC,
+    N_HISTORY,
+    N_LAUNCHES,
+    N_PIECES,
+    Engine,
+    Whole,
+)
 from puck_tables.world.floor_under import law_goes_to
 from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.paths import START as BEGINS
@@ -77,10 +84,10 @@ def with_puck(
     if not board.pucks[-1].path:
         forcing = np.vstack([forcing, _rows_from(board, now)])
     spans = np.vstack([engine.spans, [[len(engine.forcing), len(forcing)]]])
-    used, way = int(engine.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
-    way[:, BEGINS] += now
-    pieces = np.vstack([engine.pieces[:used], way, np.zeros((max(used, 128), way.shape[1]))])
-    launch = new.launches[new.launches[:, LAUNCHED] == count] + np.array([now, 0, 0, 0, 0])
+    used, motion = int(engine.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
+    motion[:, BEGINS] += now
+    pieces = np.vstack([engine.pieces[:used], motion, np.zeros((max(used, 128), motion.shape[1]))])
+    launch = new.launches[new.launches[:, LAUNCH_DISC] == count] + np.array([now, 0, 0, 0, 0])
     done = int(engine.counts[N_LAUNCHES])
     later = np.vstack([engine.launches[done:], launch])
     later = later[np.argsort(later[:, 0], kind="stable")]
@@ -94,7 +101,7 @@ def with_puck(
         "next_time": np.append(engine.next_time, math.inf),
         "next_partner": np.append(engine.next_partner, new.next_partner[count]),
         "launches": np.vstack([engine.launches[:done], later]),
-        "drives": np.vstack([engine.drives, [[used, used + len(way)]]]),
+        "drives": np.vstack([engine.drives, [[used, used + len(motion)]]]),
         "hangs": np.vstack([engine.hangs, np.zeros_like(new.hangs[:1])]),
         "history": np.vstack([engine.history, np.zeros_like(engine.history[:1])]),
         "counts": engine.counts.copy(),
@@ -105,14 +112,14 @@ def with_puck(
     before = np.concatenate([[count, GONE], segment])  # until now it was not there
     longer["history"][engine.counts[N_HISTORY]] = before
     longer["counts"][N_HISTORY] += 1
-    longer["counts"][N_PIECES] += len(way)
+    longer["counts"][N_PIECES] += len(motion)
     whole = engine._replace(
         discs=discs, regions=new.regions, floors=new.floors, rims=new.rims,
         obstacles=new.obstacles, forcing=forcing, spans=spans, pieces=pieces, **longer,
     )  # fmt: skip
     integrated = engine.floors[:, 2].reshape(-1, count).any(axis=0)
     whole = with_integrated(whole, board, order, np.flatnonzero(integrated))
-    if len(way):
+    if len(motion):
         state[VX:] = 0.0  # it goes on as its way has it
     return Start(board, order, whole, fresh.states), state
 

@@ -195,12 +195,12 @@ def _not_here(scene: SceneSpec) -> Iterator[str]:
 
 def _bad_floors(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[str]:
     """What is wrong with the friction of the floor, and whose base it does not fit."""
-    found: dict[str, list[str]] = {}
+    faults: dict[str, list[str]] = {}
     for number, puck in enumerate(pucks):
         for fault in () if puck.path else floor_faults(scene.alone(puck)):
-            found.setdefault(fault, []).append(who(scene, number))
+            faults.setdefault(fault, []).append(who(scene, number))
     slides = sum(not puck.path for puck in pucks)
-    for fault, names in found.items():
+    for fault, names in faults.items():
         yield fault if len(names) == slides else f"{', '.join(names)}: {fault}"
 
 
@@ -297,10 +297,10 @@ def _strange_rims(scene: SceneSpec) -> Iterator[str]:
                 "it out"
             )
         for side in ("puck", "partner"):
-            given, may = getattr(rim, side), (called_so if side == "puck" else known - {""})
-            if given not in may:
+            kinds, may = getattr(rim, side), (called_so if side == "puck" else known - {""})
+            if kinds not in may:
                 more = "" if side == "puck" else ", or a cushion, 'wall 0' or all, 'wall'"
                 yield (
-                    f"rim[{number}].{side} = {given!r}: must be the name of a puck or the colour "
-                    f"of pucks{more}{meant(given, sorted(may))}"
+                    f"rim[{number}].{side} = {kinds!r}: must be the name of a puck or the colour "
+                    f"of pucks{more}{meant(kinds, sorted(may))}"
                 )

@@ -31,7 +31,7 @@ from puck_tables.world.targets import Target, lying_there, out_of_reach, target_
 
 _FIRST = 1e-7  # of the range: the first step from a launch to the ends of its interval
 _LADDER = 24  # steps, each twice the one before
-_CUT, _CUTS = 12, 4  # into how many parts a bracket of an end is cut, and how often
+_PARTS, _DIVISIONS = 12, 4  # into how many parts a bracket of an end is cut, and how often
 _WITHIN = 31  # places in an interval that are looked at
 _TURNS = 2  # from the middle of one interval to that of the other
 _MOST = 16  # regions
@@ -50,21 +50,21 @@ class LaunchRegions(NamedTuple):
 
 
 class Pocketing:
-    """Regions of launches on a board that end in the obstacle ``fate``, with few enough impacts.
+    """Regions of launches on a board that end in the obstacle ``outcome``, with few enough impacts.
 
-    ``most``: how many; ``asked``: whether by the way asked for; ``low``, ``high``: between which
+    ``most``: how many; ``wanted``: whether by the way asked for; ``low``, ``high``: between which
     the speed (or spin) may be.
     """
 
     def __init__(
         self, shots: Shots, outcome: int, most: int, wanted: bool, low: float, high: float
     ) -> None:
-        self.shots, self.fate, self.most, self.asked = shots, outcome, most, wanted
+        self.shots, self.outcome, self.most, self.wanted = shots, outcome, most, wanted
         self.low, self.high = low, high
 
     def falls(self, landings: Landings) -> Which:
         """Which of them end there."""
-        return good(landings, self.most, self.asked) & (landings.fates == self.fate)
+        return good(landings, self.most, self.wanted) & (landings.outcomes == self.outcome)
 
     def regions(self, launches: FloatArray) -> LaunchRegions:
         """The regions in which some of these launches lie, the widest first.
@@ -114,8 +114,8 @@ class Pocketing:
                 room = sign * ((self.low, self.high)[side] - middles[:, 1])
             steps = np.minimum(_FIRST * span * 2.0 ** np.arange(_LADDER), room[:, None])
             inner, outer = self._last_in(middles, axis, sign, np.zeros_like(room), steps)
-            for _ in range(_CUTS):
-                parts = np.linspace(0.0, 1.0, _CUT + 1)[1:]
+            for _ in range(_DIVISIONS):
+                parts = np.linspace(0.0, 1.0, _PARTS + 1)[1:]
                 steps = inner[:, None] + (outer - inner)[:, None] * parts
                 inner, outer = self._last_in(middles, axis, sign, inner, steps)
             within = inner[:, None] * (np.arange(_WITHIN) + 1.0) / _WITHIN
@@ -162,9 +162,9 @@ class Search(NamedTuple):
         effort = effort_for(shots)
         seconds = self.low + (self.high - self.low) * (np.arange(effort.rows) + 1.0) / effort.rows
         headings = headings_for(shots.scene, wanted.striker, effort.headings)
-        asked, itself = wanted.through >= 0, wanted.puck == wanted.striker
+        has_through, itself = wanted.through >= 0, wanted.puck == wanted.striker
         sample = take_sample(aimed_at, headings, seconds, most, effort)
-        fine = good(sample.landings, most, asked) & (sample.landings.fates == 0)
+        fine = good(sample.landings, most, has_through) & (sample.landings.outcomes == 0)
         fine &= itself | (sample.landings.lengths > 0)
         close = shots.close_to(seconds.max())
         roots = stops_at(aimed_at, sample, fine, wanted.place, close, self.low, self.high)
@@ -172,7 +172,7 @@ class Search(NamedTuple):
             starts = self.velocities(roots.launches)
             return Solutions(starts, shots.sensitivities(starts))
         falling = Pocketing(
-            shots, wanted.obstacle(shots.scene), most, asked, self.low, self.high
+            shots, wanted.obstacle(shots.scene), most, has_through, self.low, self.high
         )  # fmt: skip
         sample = take_sample(shots, headings, seconds, most, effort)
         some = sample.launches[falling.falls(sample.landings)]
@@ -212,23 +212,23 @@ def aim(
         return aimed(scene, wanted, f"no launch {limit} {never}", limit=limit)
     spare = without_pocket(scene, wanted)
     runs = left_out = 0
-    found: list[Solutions] = []
+    solutions: list[Solutions] = []
     for patient in (False, True):
         for n, search in enumerate(searches):
             both = [
                 Shots(board, *wanted[:3], max_impacts, search.velocities, patient)
                 for board in (scene, spare) if board is not None
             ]  # fmt: skip
-            found.append(search.run(both[0], wanted, max_impacts, both[1] if spare else None))
+            solutions.append(search.run(both[0], wanted, max_impacts, both[1] if spare else None))
             runs += sum(shots.runs for shots in both)
             left_out += sum(shots.left_out for shots in both)
             if progress is not None:
                 progress(n + 1, len(searches))
-        if any(len(one.starts) for one in found) or not left_out:
+        if any(len(one.starts) for one in solutions) or not left_out:
             break
         left_out = 0
-    starts = np.vstack([one.starts for one in found])
-    margins = np.vstack([one.margins for one in found])
+    starts = np.vstack([one.starts for one in solutions])
+    margins = np.vstack([one.margins for one in solutions])
     return aimed(
         scene, wanted, _answer(scene, wanted, limit, max_impacts, runs, left_out), starts, margins,
         of_spin=searches[0].speed is not None, count=count, limit=limit,
@@ -274,11 +274,11 @@ def _searches(
     fastest = None if max_speed is None else positive("max_speed", max_speed, "m/s")
     widest = None if max_spin is None else positive("max_spin", max_spin, "rad/s")
     if speed is not None:
-        given = positive("speed", speed, "m/s")
-        if fastest is not None and given > fastest:
-            raise InputError(f"speed = {given:g} m/s is above max_speed = {fastest:g} m/s")
-        widest = PLENTY_SPIN * given / puck.radius if widest is None else widest
-        return [Search(None, given, -widest, widest)]
+        speeds = positive("speed", speed, "m/s")
+        if fastest is not None and speeds > fastest:
+            raise InputError(f"speed = {speeds:g} m/s is above max_speed = {fastest:g} m/s")
+        widest = PLENTY_SPIN * speeds / puck.radius if widest is None else widest
+        return [Search(None, speeds, -widest, widest)]
     spins = np.atleast_1d(finite_array("spin", puck.launch.spin if spin is None else spin, "rad/s"))
     if spins.ndim != 1 or not 1 <= spins.size <= MOST_SPINS:
         raise InputError(f"spin must be a number or a list of at most {MOST_SPINS}")
@@ -299,13 +299,13 @@ def _plenty(scene: SceneSpec, wanted: Target) -> float:
     pucks = pucks_of(scene)
     striker, puck = pucks[wanted.striker], pucks[wanted.puck]
     start = start_of(striker)
-    way = math.dist(start, wanted.place)
+    length = math.dist(start, wanted.place)
     if wanted.puck != wanted.striker:
-        way = math.dist(start, start_of(puck)) + math.dist(start_of(puck), wanted.place)
+        length = math.dist(start, start_of(puck)) + math.dist(start_of(puck), wanted.place)
     if wanted.through >= 0:
-        way += 2.0 * math.dist(start, start_of(pucks[wanted.through]))
+        length += 2.0 * math.dist(start, start_of(pucks[wanted.through]))
     share = min(1.0, 2.0 * striker.mass / (striker.mass + puck.mass))
     decel = max(striker.decel, puck.decel)
     if striker.friction == 0.0:
         raise InputError("nothing brakes the striker (its friction is 0): give max_speed")
-    return PLENTY * math.sqrt(2.0 * decel * max(way, striker.radius)) / share
+    return PLENTY * math.sqrt(2.0 * decel * max(length, striker.radius)) / share

@@ -131,7 +131,7 @@ class BoardAim(Result):
         >>> edge = Edge((0.82, 0.0), normal=(-1, 0))
         >>> table = Scene(pucks=[Puck(0.03, friction=0.1)], edges=[edge])
         >>> odds = table.aim((0.8, 0.0), spin=0.0).odds(speed=0.05, within=0.1)
-        >>> round(odds.found.value, 2), round(odds.best.value, 2)         # short of the edge
+        >>> round(odds.nominal.value, 2), round(odds.best.value, 2)         # short of the edge
         (0.5, 0.58)
         """
         self.board(number)  # which refuses a number of none
@@ -202,9 +202,9 @@ def aimed(
         miss = _miss(run, wanted)
         if miss is None:
             continue
-        course = _sequence(run, names[wanted.puck])
-        rows.append([float(run.stop_times[wanted.puck]), miss, run.end_error, len(course)])
-        courses.append(", ".join(course))
+        sequence = _sequence(run, names[wanted.puck])
+        rows.append([float(run.stop_times[wanted.puck]), miss, run.end_error, len(sequence)])
+        courses.append(", ".join(sequence))
         kept.append(n)
     starts, margins = starts[kept], margins[kept]
     values = [
@@ -250,9 +250,9 @@ def _miss(run: Run, wanted: Target) -> float | None:
 
 def _sequence(run: Run, puck: str) -> list[str]:
     """The impacts that led a puck where it ends, in words."""
-    concerned, course = {puck}, []
+    involved, impacts = {puck}, []
     for event in reversed(run.events):
-        if event.what in ("impact", "contact") and {event.puck, event.partner} & concerned:
-            course.append(f"{event.puck} - {event.partner}")
-            concerned |= {event.puck, event.partner} & set(run.names)
-    return course[::-1]
+        if event.what in ("impact", "contact") and {event.puck, event.partner} & involved:
+            impacts.append(f"{event.puck} - {event.partner}")
+            involved |= {event.puck, event.partner} & set(run.names)
+    return impacts[::-1]

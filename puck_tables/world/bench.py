@@ -25,11 +25,11 @@ LET_GO, LED, ALL_PUT = -1, -2, -3
 WAITS, TO_DO, ALONE, LACKS_PIECES = -1, -2, -3, -4
 ROWS = 2048  # of events and segments of a board in one call; beyond them it is played alone
 _PUSHES = 2  # of all its discs at once, in one call; so are more
-FOUND_COLUMNS = 12  # of an event that is told: its board, then as an Event has them
-_FOUND = 64  # passings of lines in one call
+REPORT_COLUMNS = 12  # of an event that is told: its board, then as an Event has them
+_PASSINGS = 64  # passings of lines in one call
 _NUMBERS = ("scale", "discs", "segments", "next_time")
 _WHOLE = ("kinds", "group", "next_partner", "counts", "drives", "hangs", "held")
-PACE = slice(0, 2)  # where in a row the scales of a board are
+SCALES = slice(0, 2)  # where in a row the scales of a board are
 
 
 class Slots(NamedTuple):
@@ -61,7 +61,7 @@ class Bench(NamedTuple):
     seen: FloatArray
     passed: Whole
     lines: FloatArray
-    found: FloatArray
+    reports: FloatArray
     shared: int
     order: Whole
     room: Room
@@ -109,7 +109,7 @@ def bench_for(
     )  # fmt: skip
     return Bench(
         own, numbers, whole, ended, tail, seen, np.zeros(count + 1, np.int64), lines,
-        np.zeros((_FOUND, COLUMNS)), int(engine.drives.max()), order, room_for(count),
+        np.zeros((_PASSINGS, COLUMNS)), int(engine.drives.max()), order, room_for(count),
         workplace_for(own, 3 * count + 16),
     )  # fmt: skip
 

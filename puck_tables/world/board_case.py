@@ -91,11 +91,11 @@ class BoardCase:
     def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
         """What is known of an end, by name, and its shape."""
         each: tuple[int, ...] = (len(scene.pucks),) if scene.pucks else ()
-        found = dict.fromkeys((*STATE, "in_play", "carried", "kinetic_energy"), each)
+        result = dict.fromkeys((*STATE, "in_play", "carried", "kinetic_energy"), each)
         if any(puck.constraint for puck in pucks_of(scene)):
-            found |= dict.fromkeys(("lambda_1", "lambda_2"), each)
+            result |= dict.fromkeys(("lambda_1", "lambda_2"), each)
         shared = (*NAMES, "energy_residual", "end_time", "impacts")
-        return found | dict.fromkeys(shared, ())
+        return result | dict.fromkeys(shared, ())
 
     @staticmethod
     def launches(scene: SceneSpec, path: str) -> tuple[str, ...]:
@@ -109,14 +109,14 @@ class BoardCase:
             if (values[:, 3:] != values[0, 3:]).any():
                 return ()
             paths = launch_paths(path)[:3]
-        pucks, found = pucks_of(scene), []
+        pucks, rows = pucks_of(scene), []
         for one in paths:
             match = _LAUNCH.fullmatch(one)
             puck = pucks[int(match[1] or 0)] if match is not None else None
             if puck is None or puck.launch.time > 0.0 or puck.path or puck.constraint:
                 return ()
-            found.append(one)
-        return tuple(found)
+            rows.append(one)
+        return tuple(rows)
 
     @staticmethod
     def advice(scene: SceneSpec, code: int) -> str:
@@ -173,17 +173,17 @@ class BoardCase:
                     continue
                 self._farther[farther] = own
             runs = np.flatnonzero((fastest >= top) & (tops == farther))
-            found = follow_all(self._farther[farther], self.first, discs, starts[runs], self.until)
-            for into, part in zip(ends, found, strict=True):
+            faster = follow_all(self._farther[farther], self.first, discs, starts[runs], self.until)
+            for into, part in zip(ends, faster, strict=True):
                 into[runs] = part
 
     def _status(self, ends: Ends) -> npt.NDArray[np.int8]:
         """How each run ends, a place in :data:`puck_tables.scene.run.ENDS`."""
         moves = (ends.states[:, :, 3:6] != 0.0).any(axis=2) & (ends.in_play > 0.0)
-        carried = (ends.carried > 0.0) | ~moves
+        is_held = (ends.carried > 0.0) | ~moves
         if not moves_along(self.engine.surface):
-            carried[:] = False
-        status = np.where(carried.all(axis=1), CARRIED_AWAY, TIME_UP).astype(np.int8)
+            is_held[:] = False
+        status = np.where(is_held.all(axis=1), CARRIED_AWAY, TIME_UP).astype(np.int8)
         status[~moves.any(axis=1)] = AT_REST
         if len(self.pucks) == 1:
             gone, places = ends.in_play[:, 0] == 0.0, ends.states[:, 0, :2]
@@ -200,15 +200,15 @@ class BoardCase:
         return status
 
     def _columns(self, ends: Ends, status: npt.NDArray[np.int8]) -> dict[str, FloatArray]:
-        found = {name: ends.states[..., n] for n, name in enumerate(STATE)}
-        found |= {"in_play": ends.in_play, "carried": ends.carried}
-        found["kinetic_energy"] = kinetic_of(self.engine, ends.states)
+        columns = {name: ends.states[..., n] for n, name in enumerate(STATE)}
+        columns |= {"in_play": ends.in_play, "carried": ends.carried}
+        columns["kinetic_energy"] = kinetic_of(self.engine, ends.states)
         if any(puck.constraint for puck in self.pucks):
             forces = reactions(self.engine, ends.time, ends.states, ends.in_play)
-            found |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
+            columns |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
         out = {
             name: values[:, self.place] if self.scene.pucks else values[:, 0]
-            for name, values in found.items()
+            for name, values in columns.items()
         }
         out |= {name: ends.ledgers[:, n] for name, n in NAMES.items()}
         missing, largest = ledger(out)

@@ -18,7 +18,6 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
-    ASTRIDE,
     BORDERS,
     CORNER,
     CORNERS,
@@ -26,6 +25,7 @@ from puck_tables.scene.floor_map import (
     MIDDLE_X,
     MIDDLE_Y,
     OUTSIDE,
+    OVERLAPS,
     REACH,
     corner_of,
     patch_of,
@@ -34,7 +34,7 @@ from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.contact_search import (
     MOST_LOOKS,
     PATIENCE,
-    QUIET,
+    SLOWEST,
     arc_step,
     distance2,
     distance_left,
@@ -45,7 +45,7 @@ from puck_tables.world.contact_search import (
 )
 from puck_tables.world.engine_state import N_LOOKS, Engine
 from puck_tables.world.floor_under import floor_map_span, off_border
-from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, ROUNDED, A
+from puck_tables.world.layout import INVERSE_MASS, LIES, RADIUS, ROUNDED, A
 from puck_tables.world.segment import GONE, corridor, moves_until, state_at
 from puck_tables.world.separation import stays_apart
 
@@ -58,7 +58,7 @@ Sight = tuple[float, float, float, float, float, float]
 @inlined
 def _to_line(away: float, rate: float, how: int, radius: float, accel: float) -> Sight:
     """Of a straight border in the direction (1, 0)."""
-    if how == ASTRIDE:
+    if how == OVERLAPS:
         on, back = radius + away, radius - away
         step = min(safe_step(max(on, 0.0), rate, accel), safe_step(max(back, 0.0), -rate, accel))
         return (on, rate, step, 0.0, 1.0, 0.0) if on < back else (back, -rate, step, 0.0, 1.0, 0.0)
@@ -108,7 +108,7 @@ def _to_polygon(
         share = min(max((ax * bx + ay * by) / (bx * bx + by * by), 0.0), 1.0)
         ox, oy = ax - share * bx, ay - share * by
         far = math.sqrt(ox * ox + oy * oy)
-        if how == ASTRIDE and far < radius:
+        if how == OVERLAPS and far < radius:
             stays = max(stays, arc_step(radius - far, ox, oy, vx, vy, accel))
         opens = (ox * vx + oy * vy) / far if far > 0.0 else 0.0
         one_step = safe_step(max(far - radius, 0.0), opens, accel)
@@ -119,7 +119,7 @@ def _to_polygon(
                 nx, ny = -ox / far, -oy / far
         else:
             others = min(others, one_step)
-    if how == ASTRIDE:
+    if how == OVERLAPS:
         return radius - nearest, -rate, stays, 0.0, -nx, -ny
     return nearest - radius, rate, min(step, others), others, nx, ny
 
@@ -152,7 +152,7 @@ def _never_near(
     """Whether a disc whose centre stays in a corridor never comes over a border or patch."""
     ax, ay, bx, by, margin = length
     borders = int(floor_map[BORDERS])
-    if how == ASTRIDE or margin == math.inf:
+    if how == OVERLAPS or margin == math.inf:
         return False
     reach = (radius + margin) * (1.0 + 1e-9)
     if number < borders:
@@ -177,7 +177,7 @@ def next_border(
     """
     kind, segment, disc = engine.kinds[i], engine.segments[i], engine.discs[i]
     last = min(horizon, moves_until(kind, segment), once_round(kind, segment, now))
-    if kind == GONE or not last > now or disc[LIGHTNESS] == 0.0:
+    if kind == GONE or not last > now or disc[INVERSE_MASS] == 0.0:
         return math.inf
     first, after = floor_map_span(engine.regions, engine.discs, i)
     floor_map, radius = engine.regions.floor_map[first:after], disc[RADIUS]
@@ -195,7 +195,7 @@ def next_border(
             return math.inf
         rounded = ROUNDED * (abs(one[X]) + abs(one[Y]) + radius)
         if gap <= rounded:
-            if rate < -QUIET * engine.scale[0]:
+            if rate < -SLOWEST * engine.scale[0]:
                 return t
             step = max(step, moment_there(rounded, rate, accel, t))
         if look >= PATIENCE and others > step:
@@ -206,7 +206,7 @@ def next_border(
         if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
-            return t if rate < -QUIET * engine.scale[0] else math.inf
+            return t if rate < -SLOWEST * engine.scale[0] else math.inf
         t += step
         state_at(kind, segment, disc, engine.lookups, engine.pieces, t, room, one)
     return -1.0 - t

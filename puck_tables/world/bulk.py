@@ -44,8 +44,8 @@ from puck_tables.world.segment_starts import Room, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 from puck_tables.world.step_ledger import WORK_COLUMNS
 
-PRINT, LENGTH, FATE, PASSES = range(4)  # columns of a course
-COURSE_COLUMNS = 4  # the four above
+PRINT, LENGTH, OUTCOME, PASSES = range(4)  # columns of a course
+SEQUENCE_COLUMNS = 4  # the four above
 
 _PRIME = 2147483647  # products of two numbers below it fit 64 bits
 _LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
@@ -69,7 +69,7 @@ def trace(
     for i in range(engine.discs.shape[0]):
         prints[i], marks[i] = i + 1, 0
     events = engine.counts[N_EVENTS]
-    sequence[FATE] = 0
+    sequence[OUTCOME] = 0
     for n in range(events):
         patience(1)
         what, i = int(engine.events[n, WHAT]), int(engine.events[n, WHO])
@@ -82,7 +82,7 @@ def trace(
         if j >= 0:
             prints[j] = (both % _PRIME * 40692 + j + 1) % _PRIME
         elif i == disc and what in (POCKETED, OVER_EDGE):
-            sequence[FATE] = j
+            sequence[OUTCOME] = j
     sequence[PRINT], sequence[LENGTH], sequence[PASSES] = prints[disc], 0, 0
     marks[disc] = 1
     for back in range(events):
@@ -227,10 +227,10 @@ def follow_all(
     ends = Ends(
         np.empty((runs, count, END_COLUMNS)), np.empty((runs, count)), np.empty((runs, count)),
         np.empty(runs), np.empty(runs), np.empty(runs, np.int64),
-        np.zeros((runs, COURSE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
+        np.zeros((runs, SEQUENCE_COLUMNS), np.int64), np.zeros((runs, LEDGER_COLUMNS)),
     )  # fmt: skip
     scales = _scales(engine, first, discs, launches)
-    limits, given = limits_of(engine, scales)
+    limits, prescribed = limits_of(engine, scales)
     room, rows = room_for(count), 256 + 16 * count
     mine = own_engine(engine, rows)
 
@@ -242,7 +242,7 @@ def follow_all(
         )  # fmt: skip
         _follow_all(
             mine, engine.discs, engine.kinds, engine.hangs, engine.segments, first, discs,
-            launches[start:stop], scales[start:stop], until, limits[start:stop], given,
+            launches[start:stop], scales[start:stop], until, limits[start:stop], prescribed,
             np.array(watch), room, np.empty(1 + len(mine.history) + count), part,
         )  # fmt: skip
 
@@ -277,15 +277,15 @@ def own_engine(engine: Engine, rows: int, more: int = 0, pushed: int = 0) -> Eng
 
     ``more``: rows for paths beside these; ``pushed``: of groups that push.
     """
-    works = pushed + (rows + LONGEST if engine.floors[:, 2].any() else 0)
-    pieces = np.zeros((more + works, PIECE_COLUMNS))
+    steps = pushed + (rows + LONGEST if engine.floors[:, 2].any() else 0)
+    pieces = np.zeros((more + steps, PIECE_COLUMNS))
     return engine._replace(
         regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()),
         discs=engine.discs.copy(), hangs=engine.hangs.copy(), clock=np.zeros(1),
         kinds=engine.kinds.copy(),
         segments=engine.segments.copy(), group=engine.group.copy(), held=engine.held.copy(),
         next_time=engine.next_time.copy(), next_partner=engine.next_partner.copy(),
-        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((works, WORK_COLUMNS)),
+        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((steps, WORK_COLUMNS)),
         events=np.zeros((rows, engine.events.shape[1])),
         history=np.zeros((rows, engine.history.shape[1])), counts=engine.counts.copy(),
         scale=engine.scale.copy(),

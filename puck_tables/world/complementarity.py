@@ -64,7 +64,7 @@ def _write_variables(buffer: GroupBuffer, scales: Scales, modes: IntArray) -> in
     """
     size, row = 0, 0
     for c in range(modes.shape[0]):
-        sight = buffer.sights[c]
+        sight = buffer.kinematics[c]
         rough = sight[GRIP] > 0.0
         if buffer.matrix[row, row] > 0.0:  # else between two that cannot move
             v = buffer.variables[size]
@@ -102,23 +102,23 @@ def _take_out_ties(buffer: GroupBuffer, first: int, count: int) -> None:
 def _write_tableau(buffer: GroupBuffer, size: int) -> None:
     """Write w − M z − z₀ = q in columns w, z, z₀, q, of numbers of order one."""
     a, b, table = buffer.matrix, buffer.vectors[RIGHT], buffer.tableau
-    soft, given, slips = 0.0, 0.0, 0.0
+    soft, most, slips = 0.0, 0.0, 0.0
     for i in range(size):
         r = buffer.first[i]
         soft = max(soft, a[r, r])
         if buffer.variables[i, RATE_N] != 0.0:
-            given = max(given, abs(b[r]))
+            most = max(most, abs(b[r]))
     for i in range(size):  # a slip counts as far as friction may change it
         if buffer.variables[i, CAP] >= 0.0:
             slip, cap = abs(b[buffer.first[i] + 1]), buffer.variables[i, CAP]
-            slips = max(slips, min(slip, _LOST * cap * given) if cap < _STEEPEST else slip)
-    given = max(given, slips)
+            slips = max(slips, min(slip, _LOST * cap * most) if cap < _STEEPEST else slip)
+    most = max(most, slips)
     for i in range(size):
         v, r = buffer.variables[i], buffer.first[i]
         right = v[RATE_N] * b[r]
         if v[RATE_T] != 0.0:
             right += v[RATE_T] * b[r + 1]
-        table[i, 2 * size], table[i, 2 * size + 1] = -1.0, -right / given if given > 0.0 else 0.0
+        table[i, 2 * size], table[i, 2 * size + 1] = -1.0, -right / most if most > 0.0 else 0.0
         buffer.basis[i] = i
         for j in range(size):
             w, s = buffer.variables[j], buffer.first[j]
@@ -225,7 +225,7 @@ def modes_of_lemke(buffer: GroupBuffer, modes: IntArray, scales: Scales) -> bool
         return False
     i, row = 0, 0
     for c in range(modes.shape[0]):
-        sight = buffer.sights[c]
+        sight = buffer.kinematics[c]
         rough, slip = sight[GRIP] > 0.0, sight[SLIP]
         moves = i < size and buffer.first[i] == row
         row += 2 if rough else 1
@@ -278,7 +278,7 @@ def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales, may_slid
     slack = 0.5 * LEVEL * scales.rate
     if soft == 0.0:  # between two that cannot move nothing is known, if they do not part
         return APART if gap > slack else mode
-    sight, push, rim = buffer.sights[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
+    sight, push, rim = buffer.kinematics[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
     if mode == APART:
         if gap >= -slack:
             return APART

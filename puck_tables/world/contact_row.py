@@ -13,9 +13,9 @@ from puck_tables.world.group_forces import acceleration
 from puck_tables.world.holds import response
 from puck_tables.world.layout import (
     HOLD,
-    LIGHTNESS,
+    INVERSE_INERTIA,
+    INVERSE_MASS,
     RADIUS,
-    TURNABILITY,
     along_of_pair,
     curvature,
     normal_to,
@@ -57,9 +57,9 @@ def _slownesses(
     disc: FloatArray, state: FloatArray, nx: float, ny: float
 ) -> tuple[float, float, float]:
     """How much a unit impulse changes approach and slip: 1/m_n, 1/m_t, and one the other."""
-    light, radius = disc[LIGHTNESS], disc[RADIUS]
+    light, radius = disc[INVERSE_MASS], disc[RADIUS]
     if disc[HOLD] == 0.0:
-        return light, light + disc[TURNABILITY] * radius * radius, 0.0
+        return light, light + disc[INVERSE_INERTIA] * radius * radius, 0.0
     dx, dy, turn = response(disc, state, nx, ny, 0.0)
     cross = dy * nx - dx * ny + radius * turn
     ex, ey, spin = response(disc, state, -ny, nx, radius)

@@ -48,13 +48,13 @@ from puck_tables.world.layout import (
     slack_of,
 )
 from puck_tables.world.segment import (
-    CARRIED,
     DAMPED,
     DRIFT_X,
     DRIFT_Y,
     GONE,
     LOOKED_UP,
     PATH,
+    RIDING,
     STILL,
     STRONGEST,
     UNTIL,
@@ -66,7 +66,7 @@ from puck_tables.world.segment import (
 from puck_tables.world.separation import stays_apart
 
 OUTSIDE = 1e-9  # of the radius
-QUIET = 1e-12  # of the scale of speeds: an approach as slow is none
+SLOWEST = 1e-12  # of the scale of speeds: an approach as slow is none
 # of the scales of speeds and accelerations: as good as none, of what touches; discs that part
 # begin to with an error of it, and meet only where it has brought them nearer than rounding
 HARDLY = 1e-11
@@ -90,9 +90,9 @@ def moment_there(rounded: float, rate: float, accel: float, t: float) -> float:
     What only bends moves by so little meanwhile; what opens has opened by then, and may meet what
     it goes to from there: another side of a border, or an arc.
     """
-    bends = math.sqrt(2.0 * rounded / accel) if accel > 0.0 else math.inf
+    turns = math.sqrt(2.0 * rounded / accel) if accel > 0.0 else math.inf
     opens = max(2.0 * rounded / rate, 4.0 * ROUNDED * abs(t)) if rate > 0.0 else math.inf
-    short = min(bends, opens)
+    short = min(turns, opens)
     return short if short < math.inf else 0.0
 
 
@@ -188,7 +188,7 @@ def are_held(engine: Engine, i: int, j: int) -> bool:
 @inlined
 def rest_together(kind: int, segment: FloatArray, other: int, second: FloatArray) -> bool:
     """Whether two discs rest on the same floor, or one has left play."""
-    if kind == GONE or other == GONE or (kind == CARRIED and other == CARRIED):
+    if kind == GONE or other == GONE or (kind == RIDING and other == RIDING):
         return True
     same = segment[DRIFT_X] == second[DRIFT_X] and segment[DRIFT_Y] == second[DRIFT_Y]
     return kind == STILL and other == STILL and same
@@ -208,7 +208,7 @@ def largest_accel(
 @inlined
 def once_round(kind: int, segment: FloatArray, now: float) -> float:
     """When a disc on a turntable is back where it is now."""
-    return now + 2.0 * math.pi / abs(segment[2]) if kind == CARRIED else math.inf
+    return now + 2.0 * math.pi / abs(segment[2]) if kind == RIDING else math.inf
 
 
 @inlined
@@ -217,7 +217,7 @@ def distance_left(
 ) -> float:
     """How far a disc goes at most."""
     speed = math.hypot(state[VX], state[VY])
-    if drifts(segment) or kind in (PATH, CARRIED):
+    if drifts(segment) or kind in (PATH, RIDING):
         return math.inf
     if kind == DAMPED:
         return farthest(disc[DRAG:], speed)
@@ -281,7 +281,7 @@ def next_contact(
             return math.inf
         hardly = rate >= -HARDLY * engine.scale[0] and gap >= -rounded
         if gap <= rounded:
-            if rate < -QUIET * engine.scale[0] and not hardly:
+            if rate < -SLOWEST * engine.scale[0] and not hardly:
                 return t
             step = max(step, moment_there(rounded, rate, accel, t))
         if look >= PATIENCE or (gap <= rounded and rate < 0.0):
@@ -291,7 +291,7 @@ def next_contact(
         if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
-            return t if rate < -QUIET * engine.scale[0] else math.inf
+            return t if rate < -SLOWEST * engine.scale[0] else math.inf
         t += step
         state_at(kind, segment, discs[i], lookups, pieces, t, room, one)
         state_at(other, second, discs[j], lookups, pieces, t, room, two)
@@ -363,7 +363,7 @@ def next_crossing(
             step = max(step, safe_step(max(away - slack, 0.0), closes, accel))
         # farther outside an arc it has passed where the arc is not
         if gap <= rounded and (not partly or gap > -OUTSIDE * radius):
-            if rate < -QUIET * engine.scale[0] and there:
+            if rate < -SLOWEST * engine.scale[0] and there:
                 return t
             step = max(step, moment_there(rounded, rate, accel, t))
             if not there and rate != 0.0:
@@ -376,7 +376,7 @@ def next_crossing(
         if t + step > last or step == math.inf:
             return math.inf
         if t + step == t:
-            return t if rate < -QUIET * engine.scale[0] and (there or shape == ARC) else math.inf
+            return t if rate < -SLOWEST * engine.scale[0] and (there or shape == ARC) else math.inf
         t += step
         state_at(kind, segment, disc, engine.lookups, engine.pieces, t, room, one)
     return -1.0 - t

@@ -11,11 +11,11 @@ from puck_tables.world.borders import next_border
 from puck_tables.world.contact_row import SUM_N, SUM_T, got_impulse
 from puck_tables.world.contact_search import are_apart, next_contact, next_crossing, rest_together
 from puck_tables.world.engine_state import (
+    LAUNCH_DISC,
     LAUNCH_SPIN,
     LAUNCH_TIME,
     LAUNCH_VX,
     LAUNCH_VY,
-    LAUNCHED,
     LOOK_AGAIN,
     N_AT_ONCE,
     N_CONTACTS,
@@ -32,8 +32,8 @@ from puck_tables.world.engine_state import (
 from puck_tables.world.impact import TOO_FAST, collide
 from puck_tables.world.layout import (
     EDGE,
+    INVERSE_MASS,
     KIND,
-    LIGHTNESS,
     NO_CUSHION,
     ON_FLOOR,
     OVERHANG,
@@ -50,10 +50,10 @@ from puck_tables.world.segment import (
     corridor,
 )  # fmt: skip
 from puck_tables.world.segment_starts import (
-    CONCERNED,
-    DISAPPOINTED,
+    CURRENT,
     LOOKED_AT,
-    NOT_CONCERNED,
+    PARTNER_STALE,
+    STALE,
     Room,
     cross,
     drive_on,
@@ -96,14 +96,14 @@ def _look_at_board(engine: Engine, i: int, t: float, room: Room) -> None:
     if engine.kinds[i] == PATH:
         _earlier(engine, i, engine.segments[i, UNTIL], PATH_ENDS)
     for k in range(engine.obstacles.shape[0]):
-        shape, driven = int(engine.obstacles[k, KIND]), engine.discs[i, LIGHTNESS] == 0.0
+        shape, driven = int(engine.obstacles[k, KIND]), engine.discs[i, INVERSE_MASS] == 0.0
         if driven and (shape == OVERHANG or shape < NO_CUSHION):
             continue  # what is driven is carried, and its way leads past cushions
         if shape >= ON_FLOOR:
-            found = next_border(engine, i, k, t, engine.next_time[i], room.work, room.one)
+            moment = next_border(engine, i, k, t, engine.next_time[i], room.work, room.one)
         else:
-            found = next_crossing(engine, i, k, t, engine.next_time[i], room.work, room.one)
-        _earlier(engine, i, found, -1 - k)
+            moment = next_crossing(engine, i, k, t, engine.next_time[i], room.work, room.one)
+        _earlier(engine, i, moment, -1 - k)
 
 
 @inner
@@ -123,9 +123,9 @@ def _look_at_others(engine: Engine, i: int, t: float, room: Room) -> None:
             far = corridor(other, engine.segments[j], engine.discs[j], room.one, math.inf, t)
             if are_apart(mine, far, reach):
                 continue
-        found = next_contact(engine, i, j, t, engine.next_time[i], room.work, room.one, room.two)
-        _earlier(engine, i, found, j)
-        _earlier(engine, j, found, i)
+        moment = next_contact(engine, i, j, t, engine.next_time[i], room.work, room.one, room.two)
+        _earlier(engine, i, moment, j)
+        _earlier(engine, j, moment, i)
 
 
 @inner
@@ -133,9 +133,9 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
     """What comes next for a disc happens; those concerned are marked."""
     discs = engine.discs
     for j in range(discs.shape[0]):
-        room.marks[j] = NOT_CONCERNED
+        room.marks[j] = CURRENT
     locate(engine, i, t, room)
-    room.marks[i] = CONCERNED
+    room.marks[i] = STALE
     if partner == LOOK_AGAIN:
         return REACHED
     hangs = partner < 0 and int(engine.obstacles[-1 - partner, KIND]) == OVERHANG
@@ -147,9 +147,9 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
     for j in range(discs.shape[0]):
         with_i = engine.group[j] > 0 and engine.group[j] == engine.group[i]
         with_partner = 0 <= partner < NOTHING and engine.group[j] == engine.group[partner] > 0
-        if (with_i or with_partner or j == partner) and room.marks[j] == NOT_CONCERNED:
+        if (with_i or with_partner or j == partner) and room.marks[j] == CURRENT:
             locate(engine, j, t, room)
-            room.marks[j] = CONCERNED
+            room.marks[j] = STALE
     if partner < 0:
         shape = int(engine.obstacles[-1 - partner, KIND])
         if shape >= ON_FLOOR:
@@ -175,25 +175,25 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
     # those that no impulse reached fly on
     for j in range(discs.shape[0]):
         with_them = engine.group[j] > 0 and room.marks[j] > 0
-        room.marks[j] = CONCERNED if with_them else NOT_CONCERNED
-    room.marks[i] = CONCERNED
+        room.marks[j] = STALE if with_them else CURRENT
+    room.marks[i] = STALE
     for n in range(count):
         if got_impulse(room.rows[n]):
-            room.marks[room.contacts[n, 0]] = CONCERNED
+            room.marks[room.contacts[n, 0]] = STALE
             if room.contacts[n, 1] >= 0:
-                room.marks[room.contacts[n, 1]] = CONCERNED
+                room.marks[room.contacts[n, 1]] = STALE
     return go_on(engine, t, count, room)
 
 
 @inlined
 def _launch(engine: Engine, row: FloatArray, t: float, room: Room) -> int:
     """A later launch of a disc, if it is still in play."""
-    i = int(row[LAUNCHED])
+    i = int(row[LAUNCH_DISC])
     for j in range(engine.discs.shape[0]):
-        room.marks[j] = NOT_CONCERNED
+        room.marks[j] = CURRENT
     if engine.kinds[i] == GONE:
         return REACHED
-    room.marks[i] = CONCERNED
+    room.marks[i] = STALE
     for column in range(VX):
         room.before[i, column] = math.nan
     room.before[i, VX], room.before[i, VY] = row[LAUNCH_VX], row[LAUNCH_VY]
@@ -207,9 +207,9 @@ def _look_again(engine: Engine, t: float, room: Room) -> None:
     count = engine.discs.shape[0]
     for i in range(count):
         partner = engine.next_partner[i]
-        alone = room.marks[i] == NOT_CONCERNED and 0 <= partner < NOTHING
+        alone = room.marks[i] == CURRENT and 0 <= partner < NOTHING
         if alone and room.marks[partner] > 0:
-            room.marks[i] = DISAPPOINTED
+            room.marks[i] = PARTNER_STALE
     for i in range(count):
         if room.marks[i] > 0:
             _look_at_board(engine, i, t, room)
@@ -248,14 +248,14 @@ def advance(engine: Engine, until: float, first: int, room: Room) -> int:
         elif first == EVERYBODY:
             engine.scale[3] = 0.0
             for i in range(count):
-                room.marks[i], state = CONCERNED, room.states[i]
-                given = kinetic(engine.discs[i], state[VX], state[VY], state[SPIN])
-                engine.scale[3] += given
+                room.marks[i], state = STALE, room.states[i]
+                energy = kinetic(engine.discs[i], state[VX], state[VY], state[SPIN])
+                engine.scale[3] += energy
             contacts = find_touching(engine, engine.clock[0], room)
             if contacts < 0:
                 return CROWDED
             for i in range(count):
-                room.marks[i] = CONCERNED
+                room.marks[i] = STALE
             status = go_on(engine, engine.clock[0], contacts, room)
         else:
             status = put(engine, first, engine.clock[0], room)
@@ -281,7 +281,7 @@ def advance(engine: Engine, until: float, first: int, room: Room) -> int:
             return REACHED
         if lacks_rows(engine, room):
             for i in range(count):
-                room.marks[i] = NOT_CONCERNED
+                room.marks[i] = CURRENT
             return FULL
         if events == MOST_IN_A_CALL:
             return PAUSED

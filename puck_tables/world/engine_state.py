@@ -42,7 +42,7 @@ TOGETHER = (
     "(tangential = -1), or move a puck"
 )
 
-LAUNCH_TIME, LAUNCHED, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
+LAUNCH_TIME, LAUNCH_DISC, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
 LAUNCH_COLUMNS = 5  # the five above
 
 HISTORY_COLUMNS = 2 + SEGMENT_COLUMNS  # disc, kind, segment
@@ -50,7 +50,7 @@ HISTORY_COLUMNS = 2 + SEGMENT_COLUMNS  # disc, kind, segment
 # counts
 (
     N_EVENTS, N_HISTORY, N_PIECES, N_HELD, N_LAUNCHES, N_IMPACTS, N_GROUPS, N_LOOKS, N_CONTACTS,
-    N_AT_ONCE, N_WORKS,
+    N_AT_ONCE, N_WORK_ROWS,
 ) = range(11)  # fmt: skip
 COUNTS = 11
 
@@ -130,5 +130,5 @@ def go_back(engine: Engine, parts: list[Any]) -> None:
 
 def led_rows(engine: Engine) -> FloatArray:
     """The pieces (n, 21) of the ways along which discs are driven."""
-    ways = [engine.pieces[first:last] for first, last in engine.drives.tolist() if first < last]
-    return np.concatenate([engine.pieces[:0], *ways])
+    motions = [engine.pieces[first:last] for first, last in engine.drives.tolist() if first < last]
+    return np.concatenate([engine.pieces[:0], *motions])

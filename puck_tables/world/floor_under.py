@@ -17,7 +17,6 @@ from puck_tables.scene.base_balance import nearest_belt
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
-    ASTRIDE,
     BELTS,
     BORDERS,
     EDGES,
@@ -25,6 +24,7 @@ from puck_tables.scene.floor_map import (
     OUTSIDE,
     OVER_X,
     OVER_Y,
+    OVERLAPS,
     PATCHES,
     PLACE_X,
     PLACE_Y,
@@ -33,8 +33,8 @@ from puck_tables.scene.floor_map import (
     edge_of,
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
-from puck_tables.scene.ingredients import ASTRIDE as SEVERAL
 from puck_tables.scene.ingredients import (
+    SUMMED,
     BySpeed,
     DryFriction,
     Regions,
@@ -59,9 +59,9 @@ from puck_tables.world.layout import (
     EDGE_NUMBER,
     HEIGHT_RATIO,
     INTEGRATED,
+    INVERSE_MASS,
     KIND,
     LIES,
-    LIGHTNESS,
     NORMAL,
     OVERHANG,
     RADIUS,
@@ -140,10 +140,10 @@ def law_under(regions: Regions, discs: FloatArray, i: int) -> BySpeed:
 def friction_under_disc(regions: Regions, discs: FloatArray, i: int) -> DryFriction:
     """The dry friction on a disc where it is."""
     region, law = int(discs[i, REGION]), law_under(regions, discs, i)
-    if regions.astride[region]:
+    if regions.summed[region]:
         first, last = floor_map_span(regions, discs, i)
-        law = BySpeed(regions.floor_map[first:last], 0.0, SEVERAL, 1.0)
-    return DryFriction(regions.load[region], regions.delta[region], regions.cuts[region], law)
+        law = BySpeed(regions.floor_map[first:last], 0.0, SUMMED, 1.0)
+    return DryFriction(regions.load[region], regions.delta[region], regions.limits[region], law)
 
 
 @inlined
@@ -189,7 +189,7 @@ def changes_below(floor_map: FloatArray, disc: FloatArray, surface: Surface) -> 
     Elsewhere nothing changes under it before it comes to a border.
     """
     for number in range(LIES, disc.size):
-        if disc[number] == ASTRIDE:
+        if disc[number] == OVERLAPS:
             return True
     x, y = floor_map[PLACE_X], floor_map[PLACE_Y]
     vx, vy, spin = floor_velocity(surface, x, y)
@@ -205,14 +205,14 @@ def changes_below(floor_map: FloatArray, disc: FloatArray, surface: Surface) -> 
 def lies_to(away: float, radius: float) -> int:
     """How a base lies to what its centre is so far from."""
     if abs(away) < radius:
-        return ASTRIDE
+        return OVERLAPS
     return OUTSIDE if away > 0.0 else INSIDE
 
 
 @inlined
 def is_over(regions: Regions, discs: FloatArray, i: int) -> bool:
     """Whether a disc is taken for astride."""
-    return regions.astride[int(discs[i, REGION])]
+    return regions.summed[int(discs[i, REGION])]
 
 
 @inlined
@@ -273,7 +273,7 @@ def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray
     floor_map, radius, room = regions.floor_map[first:last], discs[i, RADIUS], math.inf
     for number in range(discs.shape[1] - LIES):
         away, how = off_border(floor_map, number, state[X], state[Y]), int(discs[i, LIES + number])
-        if how == ASTRIDE:
+        if how == OVERLAPS:
             room = min(room, radius - abs(away))
         else:
             room = min(room, (away if how == OUTSIDE else -away) - radius)
@@ -286,12 +286,12 @@ def step_onto(engine: Engine, i: int) -> None:
     disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
-    strip, patch, astride = 0, -1, False
+    strip, patch, is_mixed = 0, -1, False
     if floor_map.size > 0:
         borders, patches = int(floor_map[BORDERS]), int(floor_map[PATCHES])
         for number in range(borders + patches):
             how = int(disc[LIES + number])
-            astride = astride or how == ASTRIDE
+            is_mixed = is_mixed or how == OVERLAPS
             if how == INSIDE and number < borders:
                 strip += 1
             elif how == INSIDE:
@@ -300,8 +300,8 @@ def step_onto(engine: Engine, i: int) -> None:
             strip = borders + 1 + patch
         if floor_map[EDGES] > 0.0:
             for number in range(engine.hangs.shape[1]):
-                astride = astride or engine.hangs[i, number] != 0
-        if astride:
+                is_mixed = is_mixed or engine.hangs[i, number] != 0
+        if is_mixed:
             strip = borders + 1 + patches
     region = strip * engine.discs.shape[0] + i
     disc[REGION] = region
@@ -314,7 +314,7 @@ def step_onto(engine: Engine, i: int) -> None:
 @inlined
 def is_beyond(disc: FloatArray, edge: FloatArray, x: float, y: float) -> bool:
     """Whether the rim of a disc at a place, which is not driven, is over an edge."""
-    return disc[LIGHTNESS] > 0.0 and edge[A] * x + edge[B] * y - edge[C] < disc[RADIUS]
+    return disc[INVERSE_MASS] > 0.0 and edge[A] * x + edge[B] * y - edge[C] < disc[RADIUS]
 
 
 @inlined
@@ -323,7 +323,7 @@ def lie_at(engine: Engine, i: int, x: float, y: float) -> None:
     disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
-    if disc[LIGHTNESS] > 0.0:  # else it is driven, and may have no map
+    if disc[INVERSE_MASS] > 0.0:  # else it is driven, and may have no map
         for number in range(engine.discs.shape[1] - LIES):
             away = off_border(floor_map, number, x, y)
             disc[LIES + number] = lies_to(away, disc[RADIUS])

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, law_top, load_under
-from puck_tables.scene.floor_map import NO_GROUND
+from puck_tables.scene.floor_map import NO_FLOOR_MAP
 from puck_tables.scene.floor_parts import (
     belts_of,
     count_parts,
@@ -66,13 +66,13 @@ def floors_of(scene: SceneSpec, pucks: list[ScenePuck], fastest: float) -> Float
     by_slip = bool(scene.floor.law) or scene.floor.orthotropic is not None
     rows = []
     for place in range(len(frictions[0])):
-        for puck, given in zip(pucks, frictions, strict=True):
+        for puck, friction in zip(pucks, frictions, strict=True):
             unheld = by_slip or bool(scene.floor.over_time) or _is_summed(scene, puck)
-            how = NOT_HELD if unheld else float(is_integrated(scene, puck, given[place]))
-            rows.append(_row(scene, puck, given[place], how))
+            how = NOT_HELD if unheld else float(is_integrated(scene, puck, friction[place]))
+            rows.append(_row(scene, puck, friction[place], how))
     if may_be_mixed(scene):
-        for puck, given in zip(pucks, frictions, strict=True):
-            rows.append(_row(scene, puck, max(given), NOT_HELD))
+        for puck, friction in zip(pucks, frictions, strict=True):
+            rows.append(_row(scene, puck, max(friction), NOT_HELD))
     belts = np.repeat(belts_of(scene.floor), len(pucks), axis=0)
     missing = len(rows) - len(belts)  # astride, where it depends
     belts = np.concatenate([belts, np.tile(belts[:1], (missing, 1))])
@@ -123,7 +123,7 @@ def regions_of(
     loads = np.array([
         0.0 if puck.path else normal_on(scene, puck) * friction for puck, friction in places
     ])  # fmt: skip
-    cuts, cut = none[: len(places)], cache(partial(load_limit, scene.tol))
+    limits, limit_at = none[: len(places)], cache(partial(load_limit, scene.tol))
     looks = [  # no matter at which height where it is summed
         (puck, 0.0 if sums else height, sums or friction == 0.0)
         for (puck, friction), height, sums in zip(
@@ -135,23 +135,26 @@ def regions_of(
         for puck, height, at_hand in looks
     ):
         if floors[:, 2].any():  # those that are integrated ask for friction often
-            cuts = np.stack([cut(height) for _, height, _ in looks])
+            limits = np.stack([limit_at(height) for _, height, _ in looks])
     else:
         own = [
             None if at_hand else section_of(puck, height, scene.tol)
             for puck, height, at_hand in looks
         ]  # fmt: skip
         any_one = next(one for one in own if one is not None)
-        cuts = of_one_shape([any_one if one is None else one for one in own])
-    floor_map, several = NO_GROUND, may_be_mixed(scene)
+        limits = of_one_shape([any_one if one is None else one for one in own])
+    floor_map, several = NO_FLOOR_MAP, may_be_mixed(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)
-        loads, cuts = np.concatenate([loads, most]), np.concatenate([cuts, cuts[: len(pucks)]])
+        loads, limits = (
+            np.concatenate([loads, most]),
+            np.concatenate([limits, limits[: len(pucks)]]),
+        )
     if several or summed.any():
         floor_map = _grounds(scene, pucks, np.ones(len(pucks), np.bool_))
-    astride = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
+    is_summed = np.concatenate([summed, np.ones(count - len(places), np.bool_)])
     laws = np.zeros((len(pucks), 2), np.int64)
-    return Regions(loads, delta, cuts, NO_LAW, astride, floor_map, laws)
+    return Regions(loads, delta, limits, NO_LAW, is_summed, floor_map, laws)
 
 
 def _is_summed(scene: SceneSpec, puck: ScenePuck) -> bool:
@@ -169,7 +172,7 @@ def _grounds(
     ``top``: up to which slip their laws are looked at, m/s.
     """
     grounds = [
-        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_GROUND
+        floor_map_of(scene.alone(puck), normal_on(scene, puck), top) if sums else NO_FLOOR_MAP
         for puck, sums in zip(pucks, summed, strict=True)
     ]
     size = max(map(len, grounds))  # what they end with is room to work
@@ -234,7 +237,7 @@ def _of_one_law(
         own is None and not puck.path for own, puck in zip(tables, pucks, strict=True)
     ])  # fmt: skip
     hangs = np.array([_may_hang(scene, puck) for puck in pucks])
-    floor_map = NO_GROUND
+    floor_map = NO_FLOOR_MAP
     if (summed | hangs).any():
         floor_map = _grounds(scene, pucks, summed | hangs, top)
     each = {id(own): own for own in tables if own is not None}
@@ -268,10 +271,10 @@ def fastest_rim(pucks: list[ScenePuck], states: FloatArray, surface: Surface) ->
     """The fastest in states (n, 6) and in launches to come, of all that slide, m/s."""
     most = 0.0
     for puck, state in zip(pucks, states.tolist(), strict=True):
-        launch, ways = puck.launch, [state]
+        launch, launches = puck.launch, [state]
         if launch.time > 0.0:
             velocity = launch.velocity or (0.0, 0.0)
-            ways.append([*state[: Y + 1], 0.0, *velocity, launch.spin])
-        for way in () if puck.path else ways:
-            most = max(most, slip_of_rim(puck.radius, surface, way))
+            launches.append([*state[: Y + 1], 0.0, *velocity, launch.spin])
+        for start in () if puck.path else launches:
+            most = max(most, slip_of_rim(puck.radius, surface, start))
     return most

@@ -50,8 +50,8 @@ HELD, YIELDS, MOVES, DRIVEN = range(4)
 # columns of what is seen of a contact: the normal from the first to the second; how much a slip of
 # the centres opens it, 1/m; that slip, the approach, the slip of the rims, the gap; the radii of
 # the rims (0: an obstacle), their friction, and how far the end of an arc is, rad
-NX, NY, BEND, ALONG, APPROACH, SLIP, GAP, ARM, FAR_ARM, GRIP, TO_END = range(11)
-SIGHT = 11
+NX, NY, CURVATURE, ALONG, APPROACH, SLIP, GAP, ARM, FAR_ARM, GRIP, TO_END = range(11)
+KINEMATICS = 11
 
 WATCHES = 4  # of a contact: what becomes negative at PARTS, RIM_STOPS, RIM_GIVES, RUNS_OFF
 
@@ -66,8 +66,8 @@ class Group(NamedTuple):
 
     ``discs`` (n, 25), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
     friction of every disc under its REGION; ``surface``: how the floor moves; ``rims``: their laws;
-    ``films`` (f, 20) and ``reels`` (n, 2): rows of the motions that are given, and of each disc the
-    first and last + 1; ``forcing`` (g, 4) and ``spans`` (n, 2): rows t, Fx, Fy, torque of forces
+    ``films`` (f, 20) and ``drives`` (n, 2): rows of prescribed motions, and of each disc the first
+    and last + 1; ``forcing`` (g, 4) and ``spans`` (n, 2): rows t, Fx, Fy, torque of forces
     over time (s, N, N m), and the same.
     """
 
@@ -77,7 +77,7 @@ class Group(NamedTuple):
     surface: Surface
     rims: FloatArray
     films: FloatArray
-    reels: IntArray
+    drives: IntArray
     forcing: FloatArray
     spans: IntArray
 
@@ -99,18 +99,18 @@ class GroupBuffer(NamedTuple):
     ``pairs``: the contacts by places of members; ``states``: at the start and the end of a step and
     at a trial (3, m, 6); ``stages`` (8, m, 6) and ``powers`` (10, 8): rates of states and ledger;
     ``own``, ``rates`` (m, 3): accelerations without and with contacts; ``inverse`` (m, 2): 1/m, 1/I
-    of those that can move; ``sights``, ``midway`` (c, 11): at the end and in the middle of a step;
+    of those that can move; ``kinematics``, ``midway`` (c, 11): at the end and midway in a step;
     ``watched`` (2, c, 4): see :func:`puck_tables.world.stepping.watch`; ``pushes`` (c, 2): λ, τ;
-    ``ways`` (m, 3), ``turn_rates`` (m, 2): where what yields slips to, and how fast that turns;
-    ``ties`` (2h, 3), ``tied``, ``tautness`` (2h,): what leads members, whom, and how it pulls,
+    ``slips`` (m, 3), ``turn_rates`` (m, 2): where what yields slips to, and how fast that turns;
+    ``ties`` (2h, 3), ``led_places``, ``tautness`` (2h,): what leads members, whom, how it pulls,
     ``strays`` (2h, 3): see :func:`puck_tables.world.holds.forbid`, ``number`` (1,): how many there
     are; ``rows``, ``columns`` (k, 6), ``owners`` (k, 2), ``order`` (k,), k = 2c + 2h: the
     constraints, and the members concerned; ``matrix``, ``factors`` (k, k), ``vectors`` (4, k);
     ``variables`` (4c, 5), ``first``, ``basis`` (4c,), ``tableau`` (4c, 8c + 2): of
     :mod:`puck_tables.world.complementarity`; ``modes`` (2, c), ``motions`` (m,): trials; ``gives``
-    (c,): to which side rims begin to slip; ``film`` (9,); ``carried`` (m, 3): what the floor asks
-    of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now; ``firm``
-    (m,): by what friction is more of what yields and has not begun to slip.
+    (c,): to which side rims begin to slip; ``film`` (9,); ``floor_accels`` (m, 3): what the floor
+    asks of each acceleration; ``passed`` (m,): rows of forces over time; ``clock`` (1,): now;
+    ``firm`` (m,): by what friction is more of what yields and has not begun to slip.
     """
 
     pairs: IntArray
@@ -120,14 +120,14 @@ class GroupBuffer(NamedTuple):
     own: FloatArray
     rates: FloatArray
     inverse: FloatArray
-    sights: FloatArray
+    kinematics: FloatArray
     midway: FloatArray
     watched: FloatArray
     pushes: FloatArray
-    ways: FloatArray
+    slips: FloatArray
     turn_rates: FloatArray
     ties: FloatArray
-    tied: IntArray
+    led_places: IntArray
     tautness: FloatArray
     strays: FloatArray
     number: IntArray
@@ -146,7 +146,7 @@ class GroupBuffer(NamedTuple):
     motions: IntArray
     gives: IntArray
     film: FloatArray
-    carried: FloatArray
+    floor_accels: FloatArray
     passed: IntArray
     clock: FloatArray
     firm: FloatArray
@@ -164,10 +164,10 @@ def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
         pairs=np.zeros((c, 2), np.int64), states=np.zeros((3, m, 6)),
         stages=np.zeros((stages + 1, m, 6)), powers=np.zeros((stages + 3, LEDGER)),
         own=np.zeros((m, 3)), rates=np.zeros((m, 3)), inverse=np.zeros((m, 2)),
-        sights=np.zeros((c, SIGHT)), midway=np.zeros((c, SIGHT)),
+        kinematics=np.zeros((c, KINEMATICS)), midway=np.zeros((c, KINEMATICS)),
         watched=np.zeros((2, c, WATCHES)), pushes=np.zeros((c, 2)),
-        ways=np.zeros((m, 3)), turn_rates=np.zeros((m, 2)), ties=np.zeros((h, 3)),
-        tied=np.zeros(h, np.int64), tautness=np.zeros(h), strays=np.zeros((h, 3)),
+        slips=np.zeros((m, 3)), turn_rates=np.zeros((m, 2)), ties=np.zeros((h, 3)),
+        led_places=np.zeros(h, np.int64), tautness=np.zeros(h), strays=np.zeros((h, 3)),
         number=np.zeros(1, np.int64),
         rows=np.zeros((k, 6)), columns=np.zeros((k, 6)), owners=np.zeros((k, 2), np.int64),
         order=np.zeros(k, np.int64), matrix=np.empty((k, k)), factors=np.empty((k, k)),
@@ -175,7 +175,7 @@ def buffer_for(members: int, contacts: int, led: int = 0) -> GroupBuffer:
         basis=np.zeros(4 * c, np.int64), tableau=np.empty((4 * c, 8 * c + 2)),
         modes=np.zeros((2, c), np.int64), motions=np.zeros(m, np.int64),
         gives=np.zeros(c, np.int64), film=np.zeros(9),
-        carried=np.zeros((m, 3)), passed=np.zeros(m, np.int64), clock=np.zeros(1),
+        floor_accels=np.zeros((m, 3)), passed=np.zeros(m, np.int64), clock=np.zeros(1),
         firm=np.ones(m),
     )  # fmt: skip
 
@@ -211,7 +211,7 @@ def look_at_ties(
                 disc, group.surface, t, y[place], buffer.ties[count:], buffer.strays[count:]
             )
             for _ in range(more):
-                buffer.tied[count] = place
+                buffer.led_places[count] = place
                 count += 1
     buffer.number[0] = count
 
@@ -229,14 +229,14 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
             far = group.discs[j, RADIUS]
             dx, dy = y[other, X] - y[one, X], y[other, Y] - y[one, Y]
             distance = math.hypot(dx, dy)
-            sight[NX], sight[NY], sight[BEND] = dx / distance, dy / distance, 1.0 / distance
+            sight[NX], sight[NY], sight[CURVATURE] = dx / distance, dy / distance, 1.0 / distance
             sight[GAP], sight[FAR_ARM], sight[TO_END] = distance - radius - far, far, math.inf
             vx, vy = y[one, VX] - y[other, VX], y[one, VY] - y[other, VY]
             turning = radius * y[one, SPIN] + far * y[other, SPIN]
         else:
             j, obstacle, at_x, at_y = other, group.obstacles[-1 - other], y[one, X], y[one, Y]
             sight[GAP], sight[NX], sight[NY], _ = normal_to(obstacle, radius, at_x, at_y, 0.0)
-            sight[BEND] = curvature(obstacle, radius, sight[GAP])
+            sight[CURVATURE] = curvature(obstacle, radius, sight[GAP])
             sight[FAR_ARM], sight[TO_END] = 0.0, to_end(obstacle, radius, at_x, at_y)
             vx, vy, turning = y[one, VX], y[one, VY], radius * y[one, SPIN]
         sight[ARM] = radius

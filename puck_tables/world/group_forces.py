@@ -46,12 +46,12 @@ from puck_tables.world.layout import (
     DECEL,
     DRAG,
     HOLD,
-    LIGHTNESS,
+    INVERSE_INERTIA,
+    INVERSE_MASS,
     PULL_X,
     PULL_Y,
     RADIUS,
     REGION,
-    TURNABILITY,
     TWIST,
     write_over,
 )
@@ -79,9 +79,9 @@ def pull_on(
     first, last = spans[i, 0], spans[i, 1]
     if first < last:
         fx, fy, torque = prescribed_by(forcing[first:last], passed, t)
-        ax += discs[i, LIGHTNESS] * fx
-        ay += discs[i, LIGHTNESS] * fy
-        turn += discs[i, TURNABILITY] * torque
+        ax += discs[i, INVERSE_MASS] * fx
+        ay += discs[i, INVERSE_MASS] * fy
+        turn += discs[i, INVERSE_INERTIA] * torque
     return ax, ay, turn
 
 
@@ -89,7 +89,7 @@ def pull_on(
 def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[float, float]:
     """The acceleration of the centre."""
     disc = engine.discs[i]
-    if disc[LIGHTNESS] == 0.0:
+    if disc[INVERSE_MASS] == 0.0:
         return 0.0, 0.0  # straight on
     passed = rows_passed(engine.forcing, engine.spans[i, 0], engine.spans[i, 1], t)
     ax, ay, turn = pull_on(engine.discs, engine.forcing, engine.spans, i, passed, t)
@@ -105,7 +105,7 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
             fx, fy, _, _ = friction_force(
                 at_slip_zero(friction, 1.0), disc[RADIUS], (ax - cx) / push, (ay - cy) / push, 0.0
             )  # fmt: skip
-            holds = disc[LIGHTNESS] * math.hypot(fx, fy)
+            holds = disc[INVERSE_MASS] * math.hypot(fx, fy)
         left = 1.0 - holds / push if push > engine.surface.static * holds else 0.0
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
@@ -114,9 +114,9 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
         )
         fx, fy, torque, _ = friction_force(friction, disc[RADIUS], ux, uy, w)
         dx, dy, slows, _, _ = dragged(disc[DRAG:], ux, uy, w)
-        ax += disc[LIGHTNESS] * fx + dx
-        ay += disc[LIGHTNESS] * fy + dy
-        turn += disc[TURNABILITY] * torque + slows
+        ax += disc[INVERSE_MASS] * fx + dx
+        ay += disc[INVERSE_MASS] * fy + dy
+        turn += disc[INVERSE_INERTIA] * torque + slows
     ax, ay, _ = led(disc, engine.surface, state, ax, ay, turn)
     return ax, ay
 
@@ -173,7 +173,7 @@ def place_driven(
     for place in range(members.shape[0]):
         _move_floor(group, members[place], t)
         if motions[place] == DRIVEN:
-            first, last = group.reels[members[place], 0], group.reels[members[place], 1]
+            first, last = group.drives[members[place], 0], group.drives[members[place], 1]
             on_piece(group.films[piece_at(group.films, first, last, t)], t, buffer.film)
             write_over(y[place], buffer.film[:6])
             write_over(buffer.own[place], buffer.film[6:])
@@ -220,12 +220,12 @@ def act(
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
         floor = floor_of(group.surface, disc)
         cx, cy = floor_acceleration(floor, y[place, X], y[place, Y], vx, vy)
-        carried = buffer.carried[place]
-        carried[0], carried[1], carried[2] = cx, cy, floor.turn
+        held = buffer.floor_accels[place]
+        held[0], held[1], held[2] = cx, cy, floor.turn
         if doing == DRIVEN:
             continue
         px, py, pull = _pull_on(group, members, place, buffer)
-        light, turns = disc[LIGHTNESS], disc[TURNABILITY]
+        light, turns = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
         power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
         rubbed = is_over_belts(group.regions, group.discs, number)
         if doing == HELD:
@@ -241,8 +241,8 @@ def act(
         ux, uy, w = vx - sx, vy - sy, spin - turning
         friction = _friction_under(group, members, place, y, buffer)
         if doing == YIELDS:
-            way, small = buffer.ways[place], _BEGUN if rubbed else 1.0  # other belts slip by more
-            nx, ny, nw = small * way[0], small * way[1], small * way[2]
+            slip, small = buffer.slips[place], _BEGUN if rubbed else 1.0  # other belts slip by more
+            nx, ny, nw = small * slip[0], small * slip[1], small * slip[2]
             fx, fy, torque, heat = friction_force(
                 at_slip_zero(friction, buffer.firm[place]), radius, nx, ny, nw
             )  # fmt: skip
@@ -266,13 +266,13 @@ def force_of_contacts(buffer: GroupBuffer, count: int, place: int) -> tuple[floa
     fx, fy, torque = 0.0, 0.0, 0.0
     for c in range(count):
         push, rim = buffer.pushes[c, 0], buffer.pushes[c, 1]
-        nx, ny = buffer.sights[c, NX], buffer.sights[c, NY]
+        nx, ny = buffer.kinematics[c, NX], buffer.kinematics[c, NY]
         for side in range(2):
             if buffer.pairs[c, side] == place:
                 sign = 2.0 * side - 1.0
                 fx += sign * (push * nx - rim * ny)
                 fy += sign * (push * ny + rim * nx)
-                torque -= buffer.sights[c, ARM + side] * rim
+                torque -= buffer.kinematics[c, ARM + side] * rim
     return fx, fy, torque
 
 
@@ -283,7 +283,7 @@ def power_of_contacts(
 ) -> None:  # fmt: skip
     """Heat of the rims, and work of what drives, leads and carries, into ``power``."""
     for c in range(count):
-        power[RIM_HEAT] += buffer.pushes[c, 1] * buffer.sights[c, SLIP]
+        power[RIM_HEAT] += buffer.pushes[c, 1] * buffer.kinematics[c, SLIP]
     for place in range(motions.shape[0]):
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
         if motions[place] == DRIVEN:
@@ -295,10 +295,10 @@ def power_of_contacts(
             fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
             power[SUPPORT_WORK] -= fx * vx + fy * vy + torque * spin
     for tie in range(buffer.number[0]):
-        place, row = buffer.tied[tie], buffer.ties[tie]
+        place, row = buffer.led_places[tie], buffer.ties[tie]
         if motions[place] != HELD:
-            way = row[0] * y[place, VX] + row[1] * y[place, VY] + row[2] * y[place, SPIN]
-            power[SUPPORT_WORK] -= buffer.tautness[tie] * way
+            rate = row[0] * y[place, VX] + row[1] * y[place, VY] + row[2] * y[place, SPIN]
+            power[SUPPORT_WORK] -= buffer.tautness[tie] * rate
 
 
 @inlined
@@ -309,8 +309,12 @@ def _wanted_of_floor(
     disc = group.discs[members[place]]
     fx, fy, torque = force_of_contacts(buffer, count, place)
     px, py, pull = _pull_on(group, members, place, buffer)
-    light, turns = disc[LIGHTNESS], disc[TURNABILITY]
-    ax, ay, turn = buffer.carried[place, 0], buffer.carried[place, 1], buffer.carried[place, 2]
+    light, turns = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
+    ax, ay, turn = (
+        buffer.floor_accels[place, 0],
+        buffer.floor_accels[place, 1],
+        buffer.floor_accels[place, 2],
+    )
     return fx + (px - ax) / light, fy + (py - ay) / light, torque + (pull - turn) / turns
 
 
@@ -329,7 +333,7 @@ def excess_on(
         excess, ux, uy, w = free_yield(friction, disc[RADIUS], fx, fy, torque, False)
         return excess / load, ux, uy, w
     hold = constraint_on(disc)
-    body = Body(1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY], disc[RADIUS])
+    body = Body(1.0 / disc[INVERSE_MASS], 1.0 / disc[INVERSE_INERTIA], disc[RADIUS])
     excess, ux, uy, w = constrained_yield(
         friction, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True
     )
@@ -339,10 +343,10 @@ def excess_on(
 @inlined
 def gain_of(group: Group, number: int, place: int, buffer: GroupBuffer) -> float:
     """How fast a disc that yields gains speed along its way."""
-    way, rate, radius = buffer.ways[place], buffer.rates[place], group.discs[number, RADIUS]
-    ax, ay = rate[0] - buffer.carried[place, 0], rate[1] - buffer.carried[place, 1]
-    turn = rate[2] - buffer.carried[place, 2]
-    return way[0] * ax + way[1] * ay + radius * radius * way[2] * turn
+    slip, rate, radius = buffer.slips[place], buffer.rates[place], group.discs[number, RADIUS]
+    ax, ay = rate[0] - buffer.floor_accels[place, 0], rate[1] - buffer.floor_accels[place, 1]
+    turn = rate[2] - buffer.floor_accels[place, 2]
+    return slip[0] * ax + slip[1] * ay + radius * radius * slip[2] * turn
 
 
 @inlined

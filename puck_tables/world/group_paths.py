@@ -95,20 +95,20 @@ def _horizon(engine: Engine, t: float, size: int, place: Workplace) -> tuple[flo
     """Up to when a group is followed, and whether it may set off from rest by itself."""
     surface, horizon, jump = engine.surface, math.inf, math.inf
     pulled = over = False
-    carried = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
+    moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
     for k in range(size):
         i = place.members[k]
         disc = engine.discs[i]
         pulled = pulled or disc[PULL_X] != 0.0 or disc[PULL_Y] != 0.0 or disc[TWIST] != 0.0
-        carried = carried or disc[HOLD_VX] != 0.0 or disc[HOLD_VY] != 0.0
+        moves = moves or disc[HOLD_VX] != 0.0 or disc[HOLD_VY] != 0.0
         jump = min(jump, _next_jump(engine, i, t))
-        over = over or engine.regions.astride[int(disc[REGION])]
+        over = over or engine.regions.summed[int(disc[REGION])]
         if engine.drives[i, 0] < engine.drives[i, 1]:  # what drives may turn where its piece ends
             row = place.group.films[i]
-            carried = carried or row[DURATION] >= FOR_EVER  # by hand, until it turns
+            moves = moves or row[DURATION] >= FOR_EVER  # by hand, until it turns
             horizon = min(horizon, row[START] + row[DURATION])
     jumps = jump < math.inf
-    if pulled or carried or jumps:  # for ever, perhaps, and faster than bounds should be
+    if pulled or moves or jumps:  # for ever, perhaps, and faster than bounds should be
         horizon = min(horizon, t + 2.0 * engine.scale[0] / engine.scale[1])
     swings = jumps or (surface.spin != 0.0 and pulled)
     # what holds those who lie astride changes as they are carried on

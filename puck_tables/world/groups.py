@@ -20,21 +20,21 @@ from puck_tables.world.engine_state import (
     N_HELD,
     N_HISTORY,
     N_PIECES,
-    N_WORKS,
+    N_WORK_ROWS,
     TIPS,
     Engine,
     Whole,
 )
 from puck_tables.world.group_paths import Workplace, paths_of
-from puck_tables.world.layout import LIGHTNESS, RADIUS, kinetic, write_over
+from puck_tables.world.layout import INVERSE_MASS, RADIUS, kinetic, write_over
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import DURATION, FIRST, FOR_EVER
 from puck_tables.world.paths import START as BEGINS
 from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X, PLACE_Y
 from puck_tables.world.segment_starts import (
-    CONCERNED,
-    NOT_CONCERNED,
+    CURRENT,
     SENT,
+    STALE,
     Room,
     fly_along,
     keep_segment,
@@ -69,8 +69,8 @@ def push_on(engine: Engine, room: Room, place: Workplace) -> int:
     FULL: nothing was done, for there may be too few rows; TANGLED: it is no motion.
     """
     t, rows = engine.clock[0], _find_groups(engine, room) * (LONGEST + 1)
-    lacks_works = engine.counts[N_WORKS] + rows > engine.work_rows.shape[0]
-    if lacks_works or engine.counts[N_PIECES] + rows > engine.pieces.shape[0]:
+    lacks_rows = engine.counts[N_WORK_ROWS] + rows > engine.work_rows.shape[0]
+    if lacks_rows or engine.counts[N_PIECES] + rows > engine.pieces.shape[0]:
         return FULL
     _let_go(engine, room)
     _look_at_driven(engine, t, place)
@@ -84,22 +84,22 @@ def push_on(engine: Engine, room: Room, place: Workplace) -> int:
 @inlined
 def _find_groups(engine: Engine, room: Room) -> int:
     """Give all discs that contacts join the number of the first; how many press on something."""
-    joined, count = room.shares, 0
-    for i in range(joined.shape[0]):
-        joined[i] = -1
+    grouped, count = room.shares, 0
+    for i in range(grouped.shape[0]):
+        grouped[i] = -1
     for n in range(engine.counts[N_CONTACTS]):
         for m in range(2):
             i = room.contacts[n, m]
-            if room.rows[n, ACTS] > 0.0 and i >= 0 and joined[i] < 0:
-                joined[i] = i
+            if room.rows[n, ACTS] > 0.0 and i >= 0 and grouped[i] < 0:
+                grouped[i] = i
                 count += 1
     grown = True
     while grown:
         grown = False
         for n in range(engine.counts[N_CONTACTS]):
             i, j = room.contacts[n, 0], room.contacts[n, 1]
-            if room.rows[n, ACTS] > 0.0 and j >= 0 and joined[i] != joined[j]:
-                joined[i] = joined[j] = min(joined[i], joined[j])
+            if room.rows[n, ACTS] > 0.0 and j >= 0 and grouped[i] != grouped[j]:
+                grouped[i] = grouped[j] = min(grouped[i], grouped[j])
                 grown = True
     return count
 
@@ -115,7 +115,7 @@ def _let_go(engine: Engine, room: Room) -> None:
             if same and engine.group[i] > 0 and row[ACTS] > 0.0:
                 row[ACTS] = _PRESSED
     for i in range(engine.discs.shape[0]):
-        if room.marks[i] == CONCERNED:
+        if room.marks[i] == STALE:
             engine.group[i] = 0
     left = 0
     for k in range(engine.counts[N_HELD]):
@@ -131,7 +131,7 @@ def _look_at_driven(engine: Engine, t: float, place: Workplace) -> None:
     for i in range(engine.discs.shape[0]):
         if engine.drives[i, 0] >= engine.drives[i, 1]:
             continue
-        place.group.reels[i, 0], place.group.reels[i, 1] = i, i + 1
+        place.group.drives[i, 0], place.group.drives[i, 1] = i, i + 1
         row, segment = place.group.films[i], engine.segments[i]
         if engine.kinds[i] == PATH:
             write_over(row, engine.pieces[int(segment[FIRST_PIECE])])
@@ -175,20 +175,20 @@ def _send(engine: Engine, t: float, size: int, contacts: int, room: Room, place:
     _note_contacts(engine, t, kept, first_row, room, place)
     led = NONE
     for i in members:
-        if engine.discs[i, LIGHTNESS] == 0.0:
+        if engine.discs[i, INVERSE_MASS] == 0.0:
             led = i if led == NONE else SEVERAL
     if jump[RIM_HEAT] != 0.0 and led >= 0 and alone:  # no cushion shares it
         jump[BACK_X] = jump[BACK_Y] = 0.0
         for i in members:
-            if engine.discs[i, LIGHTNESS] > 0.0:
+            if engine.discs[i, INVERSE_MASS] > 0.0:
                 for m in range(2):
                     change = room.before[i, VX + m] - states[i, VX + m]
-                    jump[BACK_X + m] += change / engine.discs[i, LIGHTNESS]
+                    jump[BACK_X + m] += change / engine.discs[i, INVERSE_MASS]
     jump[RIM_HEAT] = 0.0  # the event has it
     for i in members:  # a rim that gripped at once has changed what touches it, too
         for column in range(6):
-            if room.marks[i] == NOT_CONCERNED and states[i, column] != room.before[i, column]:
-                room.marks[i] = CONCERNED
+            if room.marks[i] == CURRENT and states[i, column] != room.before[i, column]:
+                room.marks[i] = STALE
     segment = NO_SEGMENT
     if kept > 0:
         segment = _set_out(engine, t, t_end, size, count, room, place)
@@ -206,7 +206,7 @@ def _tips(engine: Engine, t: float, members: Whole, room: Room) -> bool:
     for i in members:
         write_over(room.states[i], room.before[i])
     for i in members:
-        if engine.discs[i, LIGHTNESS] > 0.0 and loses_balance(engine, i, t, room):
+        if engine.discs[i, INVERSE_MASS] > 0.0 and loses_balance(engine, i, t, room):
             leave(engine, i, t, TIPS, i, room)
             room.marks[i], tipped = SENT, True
     return tipped
@@ -245,7 +245,7 @@ def _book(engine: Engine, segment: int, t: float, count: int, led: int, place: W
     jumps = False
     for column in range(LEDGER):
         jumps = jumps or place.jump[column] != 0.0
-    first = engine.counts[N_WORKS]
+    first = engine.counts[N_WORK_ROWS]
     if jumps:
         row = engine.work_rows[first]
         row[:] = 0.0
@@ -256,7 +256,7 @@ def _book(engine: Engine, segment: int, t: float, count: int, led: int, place: W
         row = engine.work_rows[first + k]
         write_over(row, place.work_rows[k])
         row[SEGMENT], row[LED_BY] = segment, led
-    engine.counts[N_WORKS] = first + count
+    engine.counts[N_WORK_ROWS] = first + count
 
 
 @inlined

@@ -52,7 +52,14 @@ from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scale
 from puck_tables.world.group import NX as SIGHT_NX
 from puck_tables.world.group import NY as SIGHT_NY
 from puck_tables.world.holds import forbid, response
-from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS, TURNABILITY, smaller_at, write_over
+from puck_tables.world.layout import (
+    HOLD,
+    INVERSE_INERTIA,
+    INVERSE_MASS,
+    RADIUS,
+    smaller_at,
+    write_over,
+)
 from puck_tables.world.multipliers import stop_slips
 from puck_tables.world.touching import dies_out
 
@@ -139,7 +146,7 @@ def as_forces(
             continue
         if acting == buffer.pairs.shape[0]:
             return -1
-        sight = buffer.sights[acting]
+        sight = buffer.kinematics[acting]
         for column in range(sight.shape[0]):
             sight[column] = 0.0
         sight[SIGHT_NX], sight[SIGHT_NY] = row[NX], row[NY]
@@ -153,9 +160,9 @@ def as_forces(
                 continue
             disc = engine.discs[i]
             sight[ARM + m] = disc[RADIUS]
-            if buffer.inverse[i, 0] > 0.0 or disc[LIGHTNESS] == 0.0:
+            if buffer.inverse[i, 0] > 0.0 or disc[INVERSE_MASS] == 0.0:
                 continue
-            buffer.inverse[i, 0], buffer.inverse[i, 1] = disc[LIGHTNESS], disc[TURNABILITY]
+            buffer.inverse[i, 0], buffer.inverse[i, 1] = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
             own = buffer.own[i]
             own[0], own[1], own[2] = states[i, VX], states[i, VY], states[i, SPIN]
             if disc[HOLD] != 0.0:
@@ -167,7 +174,7 @@ def as_forces(
                 for _ in range(more):  # impulses leave what is led as it goes
                     tie = buffer.ties[ties]
                     buffer.strays[ties, 2] = tie[0] * own[0] + tie[1] * own[1] + tie[2] * own[2]
-                    buffer.tied[ties] = i
+                    buffer.led_places[ties] = i
                     ties += 1
         acting += 1
     buffer.number[0] = ties
@@ -192,7 +199,7 @@ def _together(
         row = rows[n]
         if row[ACTS] > 0.0:
             un, ut = approach(engine, contacts[n, 0], contacts[n, 1], row[NX], row[NY], states)
-            slides = abs(ut) * row[SOFT] > most(buffer.sights[c], un) * row[SLICK]
+            slides = abs(ut) * row[SOFT] > most(buffer.kinematics[c], un) * row[SLICK]
             modes[c] = int(math.copysign(1.0, ut)) if slides else STICKS
             c += 1
     speed = engine.scale[0]

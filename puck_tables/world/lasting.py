@@ -19,20 +19,27 @@ from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.by_speed import FARTHER, end_of_laws, laws_in
 from puck_tables.scene.equations import SIZE
 from puck_tables.scene.forces import SLIDING
-from puck_tables.scene.ingredients import NO_WAY, SLIDES, DryFriction, Phase
+from puck_tables.scene.ingredients import NO_DIRECTION, SLIDES, DryFriction, Phase
 from puck_tables.scene.over_time import FLOOR_SPIN, FLOOR_X, FLOOR_Y
 from puck_tables.scene.rest import excess_at_rest
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.engine_state import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Engine, Whole
 from puck_tables.world.floor_under import SURE, floor_of, law_goes_to, law_under, least_slip
 from puck_tables.world.floors import slip_of_rim
-from puck_tables.world.layout import DRAG, LIGHTNESS, PULL_X, PULL_Y, RADIUS, TURNABILITY, TWIST
+from puck_tables.world.layout import (
+    DRAG,
+    INVERSE_INERTIA,
+    INVERSE_MASS,
+    PULL_X,
+    PULL_Y,
+    RADIUS,
+    TWIST,
+)
 from puck_tables.world.lone_model import model_of
 from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
 from puck_tables.world.prepare import with_law_up_to
 from puck_tables.world.segment import (
-    CARRIED,
     DAMPED,
     FIRST_PIECE,
     GONE,
@@ -40,11 +47,12 @@ from puck_tables.world.segment import (
     LOOKED_UP,
     PATH,
     RIDES,
+    RIDING,
     START,
     UNTIL,
     state_at,
 )  # fmt: skip
-from puck_tables.world.segment_starts import CONCERNED, Room
+from puck_tables.world.segment_starts import STALE, Room
 from puck_tables.world.setting_off import REACHED, UNSEEN
 
 STUCK, _WITHIN = 1e-11, 10.0  # of the scale of speeds, and times the error of a step in it
@@ -124,7 +132,7 @@ def moves_on(engine: Engine, n: int, end: float, room: Room) -> float:
     if kind == DAMPED:
         return end
     if kind == PATH:
-        driven = engine.discs[int(engine.history[n, 0]), LIGHTNESS] == 0.0
+        driven = engine.discs[int(engine.history[n, 0]), INVERSE_MASS] == 0.0
         end = min(end, segment[UNTIL])
         if driven or _slip_at(engine, n, start, room) > at_rest_below(engine):
             return end
@@ -175,7 +183,7 @@ def next_target(
     last, pending, carries = 0.0, math.inf, False
     for i in range(ends.size):
         last, pending = max(last, ends[i]), min(pending, engine.next_time[i])
-        carries = carries or engine.kinds[i] in (CARRIED, PATH)
+        carries = carries or engine.kinds[i] in (RIDING, PATH)
     count = engine.counts[N_EVENTS]
     happened = engine.events[count - 1, TIME] if count > 0 else 0.0
     if last == math.inf:
@@ -197,42 +205,42 @@ def limits_of(engine: Engine, scales: FloatArray) -> tuple[FloatArray, float]:
 
     ``scales`` (n, 2): their scales of speed and acceleration.
     """
-    given = prescribed_until(engine)
-    return max(float(engine.clock[0]), given) + longest_of(engine, scales), given
+    prescribed = prescribed_until(engine)
+    return max(float(engine.clock[0]), prescribed) + longest_of(engine, scales), prescribed
 
 
 @kernel
 def prescribed_until(engine: Engine) -> float:
     """When the last launch, force or film is over, s."""
-    given = 0.0
+    last = 0.0
     for row in range(engine.launches.shape[0]):
-        given = max(given, engine.launches[row, LAUNCH_TIME])
+        last = max(last, engine.launches[row, LAUNCH_TIME])
     for row in range(engine.forcing.shape[0]):
-        given = max(given, engine.forcing[row, 0])
+        last = max(last, engine.forcing[row, 0])
     for i in range(engine.drives.shape[0]):
         for row in range(engine.drives[i, 0], engine.drives[i, 1]):
             if engine.pieces[row, DURATION] < FOR_EVER:
-                given = max(given, engine.pieces[row, PIECE_START] + engine.pieces[row, DURATION])
-    return given
+                last = max(last, engine.pieces[row, PIECE_START] + engine.pieces[row, DURATION])
+    return last
 
 
 def longest_of(engine: Engine, scales: FloatArray) -> FloatArray:
     """LONG times what the least friction takes at such scales of speed and acceleration, s."""
-    slowness, pushed, drags = braking_of(engine)
-    times = np.maximum(slowness * (scales[:, 0] + pushed), scales[:, 0] / scales[:, 1])
+    lever, pushed, drags = braking_of(engine)
+    times = np.maximum(lever * (scales[:, 0] + pushed), scales[:, 0] / scales[:, 1])
     return LONG * np.maximum(times, drags)
 
 
 def braking_of(engine: Engine) -> tuple[float, float, float]:
     """How long the least friction takes over a speed, s²/m, what forces add to it, m/s; drag, s."""
-    free = engine.discs[engine.discs[:, LIGHTNESS] > 0.0]
+    free = engine.discs[engine.discs[:, INVERSE_MASS] > 0.0]
     decels = engine.floors[:, 0]
     brakes = _brakes(engine)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
-    arms = free[:, LIGHTNESS] / (free[:, TURNABILITY] * free[:, RADIUS] ** 2)  # k²
-    slowness = float((2.0 * arms).max(initial=1.0)) / float(brakes.min(initial=math.inf))
+    arms = free[:, INVERSE_MASS] / (free[:, INVERSE_INERTIA] * free[:, RADIUS] ** 2)  # k²
+    lever = float((2.0 * arms).max(initial=1.0)) / float(brakes.min(initial=math.inf))
     drags = free[free[:, DRAG + SLIDING] > 0.0, DRAG + SLIDING]
-    return slowness, float(_pushed(engine).max()), float((1.0 / drags).max(initial=0.0))
+    return lever, float(_pushed(engine).max()), float((1.0 / drags).max(initial=0.0))
 
 
 def _brakes(engine: Engine) -> FloatArray:
@@ -251,23 +259,23 @@ def _fill_brakes(engine: Engine, y: FloatArray, out: FloatArray) -> None:
     regions, count = engine.regions, engine.discs.shape[0]
     for row in range(out.size):
         i = row % count
-        if engine.discs[i, TWIST] == 0.0 or regions.astride[row] or regions.load[row] == 0.0:
+        if engine.discs[i, TWIST] == 0.0 or regions.summed[row] or regions.load[row] == 0.0:
             continue
         law = law_under(regions, engine.discs, i)
-        friction = DryFriction(regions.load[row], regions.delta[row], regions.cuts[row], law)
-        phase = Phase(model_of(engine, i), friction, 0, SLIDES, NO_WAY, 0.0)
+        friction = DryFriction(regions.load[row], regions.delta[row], regions.limits[row], law)
+        phase = Phase(model_of(engine, i), friction, 0, SLIDES, NO_DIRECTION, 0.0)
         excess = abs(excess_at_rest(phase, 0.0, y)[0])
-        out[row] = min(excess, regions.load[row]) * engine.discs[i, LIGHTNESS]
+        out[row] = min(excess, regions.load[row]) * engine.discs[i, INVERSE_MASS]
 
 
 def _pushed(engine: Engine) -> FloatArray:
     """What speed forces over time give every disc at most, m/s."""
-    found = np.zeros(len(engine.discs))
+    pushes = np.zeros(len(engine.discs))
     for i in np.flatnonzero(engine.spans[:, 0] < engine.spans[:, 1]).tolist():
         rows, disc = engine.forcing[slice(*engine.spans[i])], engine.discs[i]
         strength = np.hypot(rows[:, 1], rows[:, 2]) + np.abs(rows[:, 3]) / disc[RADIUS]
-        found[i] = disc[LIGHTNESS] * np.trapezoid(strength, rows[:, 0])
-    return found
+        pushes[i] = disc[INVERSE_MASS] * np.trapezoid(strength, rows[:, 0])
+    return pushes
 
 
 def refuse_too_fast(engine: Engine, scene: SceneSpec, name: str, i: int, state: FloatArray) -> None:
@@ -294,13 +302,13 @@ def with_law_for(
     top = law_goes_to(engine.regions)
     if top == math.inf:
         return engine
-    for i in np.flatnonzero(room.marks == CONCERNED):
+    for i in np.flatnonzero(room.marks == STALE):
         fastest = slip_of_rim(
             engine.discs[i, RADIUS],
             floor_of(engine.surface, engine.discs[i]),
             room.states[i].tolist(),
         )
-        if engine.discs[i, LIGHTNESS] == 0.0 or fastest < SURE * top:
+        if engine.discs[i, INVERSE_MASS] == 0.0 or fastest < SURE * top:
             continue
         if top == end_of_laws(scene)[0]:
             raise InputError(

@@ -24,7 +24,7 @@ from puck_tables.world.engine_state import (
     LOST,
     N_EVENTS,
     N_HISTORY,
-    N_WORKS,
+    N_WORK_ROWS,
     OVER_EDGE,
     PLACED,
     POCKETED,
@@ -35,7 +35,7 @@ from puck_tables.world.engine_state import (
     WHAT,
     Engine,
 )
-from puck_tables.world.layout import LIGHTNESS, PULL_X, PULL_Y, TURNABILITY, kinetic
+from puck_tables.world.layout import INVERSE_INERTIA, INVERSE_MASS, PULL_X, PULL_Y, kinetic
 from puck_tables.world.record import first_from
 from puck_tables.world.segment import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
 from puck_tables.world.segment_starts import Room
@@ -56,10 +56,10 @@ from puck_tables.world.step_ledger import START as BEGINS
 if TYPE_CHECKING:
     from puck_tables.world.world import World
 
-LAUNCHED, LEFT, IMPACT_HEAT = range(LEDGER, LEDGER + 3)
+LAUNCH_ENERGY, LEFT, IMPACT_HEAT = range(LEDGER, LEDGER + 3)
 LEDGER_COLUMNS = LEDGER + 3  # those of works, and these
 NAMES = {
-    "energy_given": LAUNCHED, "energy_gone": LEFT, "work_given": PULL_WORK,
+    "energy_given": LAUNCH_ENERGY, "energy_gone": LEFT, "work_given": PULL_WORK,
     "work_driven": DRIVE_WORK, "work_support": SUPPORT_WORK, "heat_dry": FLOOR_HEAT,
     "heat_viscous": DRAG_HEAT, "heat_rims": RIM_HEAT, "heat_impact": IMPACT_HEAT,
 }  # fmt: skip
@@ -70,7 +70,7 @@ _NOTHING = 1e-6  # of what the pucks hold at the scale of speeds: an energy next
 
 def energy_scale(engine: Engine) -> float:
     """The least energy to which what a ledger misses is compared, J."""
-    light = engine.discs[:, LIGHTNESS]
+    light = engine.discs[:, INVERSE_MASS]
     return _NOTHING * 0.5 * float((1.0 / light[light > 0.0]).sum() * engine.scale[0] ** 2)
 
 
@@ -78,7 +78,7 @@ def energy_scale(engine: Engine) -> float:
 def _pulled(engine: Engine, i: int, start: float, t: float, vx: float, vy: float) -> float:
     """What slope and given forces work on a disc that a belt carries, from the start to t, J."""
     disc, first, last = engine.discs[i], engine.spans[i, 0], engine.spans[i, 1]
-    work = (disc[PULL_X] * vx + disc[PULL_Y] * vy) / disc[LIGHTNESS] * (t - start)
+    work = (disc[PULL_X] * vx + disc[PULL_Y] * vy) / disc[INVERSE_MASS] * (t - start)
     for n in range(first + max(rows_passed(engine.forcing, first, last, start), 1), last):
         one, two = engine.forcing[n - 1], engine.forcing[n]
         begin, end = max(one[0], start), min(two[0], t)
@@ -95,7 +95,7 @@ def _begin_flown(engine: Engine, n: int, room: Room) -> bool:
     """The state at the start of a segment into ``room.one``; False: it is integrated, or driven."""
     row = engine.history[n]
     i, kind, segment = int(row[0]), int(row[1]), row[2:]
-    if engine.discs[i, LIGHTNESS] == 0.0 or kind in (PATH, GONE):
+    if engine.discs[i, INVERSE_MASS] == 0.0 or kind in (PATH, GONE):
         return False
     state_at(
         kind, segment, engine.discs[i], engine.lookups, engine.pieces, segment[START], room.work,
@@ -130,7 +130,7 @@ def _add_event(event: FloatArray, ledger: FloatArray) -> None:
     ledger[IMPACT_HEAT] += event[LOST]
     ledger[SUPPORT_WORK] += event[LED]
     if what in (STRUCK, PLACED, ADDED):
-        ledger[LAUNCHED] += event[GOT]
+        ledger[LAUNCH_ENERGY] += event[GOT]
     elif what in (POCKETED, OVER_EDGE, TIPS, REMOVED):
         ledger[LEFT] += event[GOT]
     elif what == IMPACT:
@@ -149,13 +149,13 @@ def tally(engine: Engine, times: FloatArray, room: Room, ends: FloatArray, out: 
     for k in range(last):
         for column in range(LEDGER_COLUMNS):
             out[k, column] = 0.0
-        out[k, LAUNCHED] = engine.scale[3] if k == 0 else 0.0
+        out[k, LAUNCH_ENERGY] = engine.scale[3] if k == 0 else 0.0
     for n in range(segments):  # all of it, from its end on
         patience(1)
         k = first_from(times, ends[n])
         if k < last and _begin_flown(engine, n, room):
             _add_flown(engine, n, ends[n], room, out[k])
-    for n in range(engine.counts[N_WORKS]):
+    for n in range(engine.counts[N_WORK_ROWS]):
         end = _end_of(engine, n, ends)
         k = first_from(times, end)
         if k < last:
@@ -174,7 +174,7 @@ def tally(engine: Engine, times: FloatArray, room: Room, ends: FloatArray, out: 
             continue
         for k in range(begin, end):
             _add_flown(engine, n, times[k], room, out[k])
-    for n in range(engine.counts[N_WORKS]):
+    for n in range(engine.counts[N_WORK_ROWS]):
         begin = first_from(times, engine.work_rows[n, BEGINS])
         for k in range(begin, first_from(times, _end_of(engine, n, ends))):
             add_worked(engine.work_rows[n], times[k], out[k])
@@ -210,7 +210,7 @@ def energies_of(world: World, times: FloatArray, states: FloatArray) -> dict[str
 
 def kinetic_of(engine: Engine, states: FloatArray) -> FloatArray:
     """½ m v² + ½ I ω² of states (..., discs, 6), J; nothing of what is driven."""
-    light, turn = engine.discs[:, LIGHTNESS], engine.discs[:, TURNABILITY]
+    light, turn = engine.discs[:, INVERSE_MASS], engine.discs[:, INVERSE_INERTIA]
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = 0.5 * (states[..., VX] ** 2 + states[..., VY] ** 2) / light
         energy = energy + 0.5 * states[..., SPIN] ** 2 / turn

@@ -17,7 +17,7 @@ from puck_tables.kernels.compile import inlined, on_demand, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.equations import (
     FIRST,
-    GIVEN,
+    FORCE_WORK,
     ROW,
     SIZE,
     rates,
@@ -29,11 +29,11 @@ from puck_tables.scene.equations import (
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X
 from puck_tables.scene.ingredients import (
-    CARRIED,
     FREE,
-    NO_WAY,
+    NO_DIRECTION,
     PIVOT,
     SLIDES,
+    STICKING,
     STOPS,
     DryFriction,
     Model,
@@ -110,8 +110,8 @@ def _lay_out(
     length, energy = speed * speed / engine.scale[1], body.mass * speed * speed
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     for n in range(SIZE):
-        buffer.y[n] = state[n] if n < GIVEN else 0.0
-        buffer.scale[n] = length if n < VX else (speed if n < GIVEN else energy)
+        buffer.y[n] = state[n] if n < FORCE_WORK else 0.0
+        buffer.scale[n] = length if n < VX else (speed if n < FORCE_WORK else energy)
     buffer.scale[THETA] = length / body.radius
     buffer.scale[SPIN] = speed / (slow * body.radius)
     follow_scales(buffer.scale, tol, engine.scale[1], body, buffer.y)
@@ -153,7 +153,7 @@ def _longest(
     if phase.mode == SLIDES and phase.friction.load > 0.0:
         pull, least = slip_rate(radius, buffer.stages), REST * speed
         h = up_to_the_stop(phase, h, q, least, pull, _NEAR, y, buffer.stages)
-    elif phase.mode == CARRIED:
+    elif phase.mode == STICKING:
         if surface.spin != 0.0:
             h = min(h, _SWING / abs(surface.spin))
         if surface.turn != 0.0:
@@ -179,8 +179,8 @@ def _is_stiff(model: Model, load: float, stiff: bool, h: float, q: float, pull: 
     if _keeps_direction(model):
         return False
     damps, turns = settling_rates(model, load)
-    settles = h * (damps + turns / q if q > 0.0 else damps)
-    return pull < _SLOWLY * (damps * q + turns) and settles > (_MILD if stiff else _STIFF)
+    damping = h * (damps + turns / q if q > 0.0 else damps)
+    return pull < _SLOWLY * (damps * q + turns) and damping > (_MILD if stiff else _STIFF)
 
 
 @inlined
@@ -201,7 +201,7 @@ def _goes_on(
 @inlined
 def _is_held(phase: Phase, t: float, h: float, buffer: LoneBuffer) -> tuple[float, bool]:
     """How long of a step over h a puck at rest is held by the floor, and whether it is lost."""
-    if phase.mode != CARRIED:
+    if phase.mode != STICKING:
         return h, False
     slips = lost(phase, t, h, buffer.y, buffer.scale, buffer.stages, buffer.new)
     length = min(slips, h)
@@ -222,14 +222,14 @@ def _from_rest(
     y, speed = buffer.y, engine.scale[0]
     vx, vy, spin = y[VX], y[VY], y[SPIN]
     y[VX] = y[VY] = y[SPIN] = 0.0
-    at_rest = Phase(model, friction, rows, CARRIED, NO_WAY, 0.0)
+    at_rest = Phase(model, friction, rows, STICKING, NO_DIRECTION, 0.0)
     mode, stiff, q = from_standstill(at_rest, speed, t, y, buffer.stages)
     sx, sy, turning = floor_velocity(surface_of(model, t), y[X], y[X + 1])
     rounded = _ROUNDED * (math.hypot(sx, sy) + model.body.radius * abs(turning))
     if mode == SLIDES and begins and slow > max(q, rounded):
-        q = _goes_on(Phase(model, friction, rows, SLIDES, NO_WAY, 0.0), t, vx, vy, spin, q, y,
+        q = _goes_on(Phase(model, friction, rows, SLIDES, NO_DIRECTION, 0.0), t, vx, vy, spin, q, y,
                      buffer.stages)  # fmt: skip
-    rests = mode == CARRIED and not swings(engine, i, model, friction, rows)
+    rests = mode == STICKING and not swings(engine, i, model, friction, rows)
     rests = rests and rests_on(model, friction, rows, y)
     return mode, stiff and not _keeps_direction(model), q, rests
 
@@ -244,12 +244,12 @@ def _last_of(
     body = phase.model.body
     slow = max(1.0, 2.0 * body.inertia / (body.mass * body.radius * body.radius))
     pull = slip_rate(body.radius, stages)
-    way, _ = goes_straight(phase, speed, tol, unit, t, q, pull, slow, y, stages)
-    if not way[3] < 0.0:
+    direction, _ = goes_straight(phase, speed, tol, unit, t, q, pull, slow, y, stages)
+    if not direction[3] < 0.0:
         return phase, h
-    straight = Phase(phase.model, phase.friction, phase.piece, STOPS, way, 0.0)
+    straight = Phase(phase.model, phase.friction, phase.piece, STOPS, direction, 0.0)
     rates(straight, t, y, stages, FIRST)
-    return straight, -q / way[3]
+    return straight, -q / direction[3]
 
 
 @inlined
@@ -266,7 +266,7 @@ def _go_on_from(model: Model, tol: float, accel: float, buffer: LoneBuffer) -> N
 def _put_down(model: Model, t: float, state: FloatArray, buffer: LoneBuffer) -> None:
     """Where it rests, in the laboratory, into ``state`` (6,)."""
     to_laboratory(surface_of(model, t), buffer.y, 1.0)
-    for n in range(GIVEN):
+    for n in range(FORCE_WORK):
         state[n] = buffer.y[n]
 
 
@@ -301,7 +301,7 @@ def follow_alone(
     tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load
     _lay_out(engine, model, t, state, tol, buffer)
     straight, horizon = _LAST * math.sqrt(tol) * speed, horizon_of(engine, model, t)
-    now, passed, h, count, mode, way = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_WAY
+    now, passed, h, count, mode, direction = t, 0.0, _BEGIN * unit, 0, SLIDES, NO_DIRECTION
     undecided, known, stiff, over, rests, tips = True, False, False, False, False, math.inf
     before, failed, held = math.inf, False, True
     while now < horizon and count <= LONGEST - _MOST and not over:
@@ -310,22 +310,22 @@ def follow_alone(
         target = min(drive[rows, 0], horizon) if rows < len(drive) else horizon
         q = slip_speed(radius, y)
         if undecided:
-            was, mode, way = mode, SLIDES, NO_WAY
+            was, mode, direction = mode, SLIDES, NO_DIRECTION
             if load > 0.0 and q <= REST * speed:
                 mode, stiff, q, rests = _from_rest(
                     engine, i, model, friction, rows, now, q, count == 0, buffer
                 )
-                if rests or ((mode == CARRIED) != (was == CARRIED) and count > 0 and now > t):
+                if rests or ((mode == STICKING) != (was == STICKING) and count > 0 and now > t):
                     break
-                h = target - now if mode == CARRIED else h
+                h = target - now if mode == STICKING else h
         newton = max(_NEWTON * tol, _FINEST_NEWTON) if stiff and mode == SLIDES else 0.0
-        phase = Phase(model, friction, rows, mode, way, newton)
+        phase = Phase(model, friction, rows, mode, direction, newton)
         if undecided or not known:
             rates(phase, now, y, stages, FIRST)
         undecided, known = False, True
         if mode == SLIDES and load > 0.0 and 0.0 < q <= straight:
             phase, h = _last_of(phase, engine.scale, tol, now, q, h, buffer)
-            mode, way, newton = phase.mode, phase.way, phase.newton
+            mode, direction, newton = phase.mode, phase.direction, phase.newton
         whole, landed = _longest(phase, now, h, q, speed, target, buffer)
         error = step(phase, now, whole, y, buffer.scale, stages, new)
         grows = times_as_long(error, tol, 0.25 if newton > 0.0 else 0.125, 0.1)
@@ -355,7 +355,7 @@ def follow_alone(
             continue
         reach = whole * (tol / error) ** 0.125 if newton == 0.0 and error > 0.0 else math.inf
         h = min(whole * _held_back(grows, failed, reach, before), longest if most > 1 else math.inf)
-        before, failed, held = reach, False, held and mode == CARRIED
+        before, failed, held = reach, False, held and mode == STICKING
         count, passed = count + (parts if length > _SHORTEST * unit else 0), passed + length
         now = target if landed else max(t + passed, now + length)  # ``passed`` may be rounded off
         h = min(h, 0.5 * (tips - now)) if now < tips else h

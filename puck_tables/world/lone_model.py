@@ -26,11 +26,11 @@ from puck_tables.world.floor_under import (
 from puck_tables.world.holds import constraint_on
 from puck_tables.world.layout import (
     DRAG,
-    LIGHTNESS,
+    INVERSE_INERTIA,
+    INVERSE_MASS,
     PULL_X,
     PULL_Y,
     RADIUS,
-    TURNABILITY,
     TWIST,
 )
 
@@ -41,7 +41,7 @@ _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
 def model_of(engine: Engine, i: int) -> Model:
     """All that acts on a disc but dry friction."""
     disc = engine.discs[i]
-    mass, inertia = 1.0 / disc[LIGHTNESS], 1.0 / disc[TURNABILITY]
+    mass, inertia = 1.0 / disc[INVERSE_MASS], 1.0 / disc[INVERSE_INERTIA]
     drive = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
     forces = Forces(
         mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,

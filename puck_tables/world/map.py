@@ -60,14 +60,14 @@ class Map(SceneEnds):
         >>> scene.sweep().numbers(2)
         {'puck.friction': 0.2, 'launch.spin': 0.0}
         """
-        found: dict[str, float] = {}
+        values_at: dict[str, float] = {}
         place = np.unravel_index(run, self.end.shape)
         for (path, values), i in zip(self.scene.ranges.items(), place, strict=True):
             if is_batch(path):
-                found |= zip(launch_paths(path), values[i].tolist(), strict=True)
+                values_at |= zip(launch_paths(path), values[i].tolist(), strict=True)
             else:
-                found[path] = float(values[i])
-        return found
+                values_at[path] = float(values[i])
+        return values_at
 
     @cached_property
     def error_estimate(self) -> float:
@@ -99,9 +99,9 @@ class Map(SceneEnds):
 
     def dataset(self) -> Dataset:
         """The results over what ranges; the scene and its files as texts."""
-        found = super().dataset()
+        result = super().dataset()
         more = {"model": self.model, "error_estimate": self.error_estimate}
-        return replace(found, attributes={**found.attributes, **more})
+        return replace(result, attributes={**result.attributes, **more})
 
 
 def largest_error(ends: SceneEnds) -> float:

@@ -23,7 +23,7 @@ from puck_tables.world.group import (
     APART,
     APPROACH,
     ARM,
-    BEND,
+    CURVATURE,
     FAR_ARM,
     GAP,
     GRIP,
@@ -41,12 +41,12 @@ RIGHT, SOLUTION, LEFT, STEP = range(4)  # vectors of the buffer
 
 @inner
 def close_gaps(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> None:
-    """Places where all that presses touches and all that is led is; the sights are of y (m, 6)."""
+    """Places where what presses touches and what is led is; the kinematics are of y (m, 6)."""
     count = constrain(buffer, modes, False, False)
     number = 0
     for c in range(modes.shape[0]):
         if modes[c] != APART:
-            buffer.vectors[RIGHT, number] = -buffer.sights[c, GAP]
+            buffer.vectors[RIGHT, number] = -buffer.kinematics[c, GAP]
             number += 1
     stray(buffer, number, 0)
     solve(buffer, count)
@@ -66,7 +66,7 @@ def stop_slips(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> float:
             continue
         buffer.vectors[RIGHT, number] = times_row(buffer, number, y, 3)
         number += 1
-        if modes[c] == STICKS and buffer.sights[c, GRIP] > 0.0:
+        if modes[c] == STICKS and buffer.kinematics[c, GRIP] > 0.0:
             buffer.vectors[RIGHT, number] = times_row(buffer, number, y, 3)
             number += 1
     stray(buffer, number, 1)
@@ -114,7 +114,7 @@ def constrain(buffer: GroupBuffer, modes: IntArray, sticks: bool, slides: bool) 
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        sight = buffer.sights[c]
+        sight = buffer.kinematics[c]
         for along in range(2):
             if along == 1 and not (sticks and modes[c] == STICKS and sight[GRIP] > 0.0):
                 continue
@@ -130,7 +130,7 @@ def constrain(buffer: GroupBuffer, modes: IntArray, sticks: bool, slides: bool) 
                 column[2], column[5] = rim * sight[ARM], rim * sight[FAR_ARM]
             count += 1
     for tie in range(buffer.number[0]):
-        buffer.owners[count, 0], buffer.owners[count, 1] = buffer.tied[tie], -1
+        buffer.owners[count, 0], buffer.owners[count, 1] = buffer.led_places[tie], -1
         for i in range(3):
             buffer.rows[count, i] = buffer.columns[count, i] = buffer.ties[tie, i]
             buffer.rows[count, 3 + i] = buffer.columns[count, 3 + i] = 0.0
@@ -212,12 +212,12 @@ def solve(buffer: GroupBuffer, count: int) -> float:
     fill_matrix(buffer, count)
     _factor(buffer, count)
     lu, v = buffer.factors, buffer.vectors
-    given, left = 0.0, 0.0
+    largest, left = 0.0, 0.0
     for r in range(count):
         v[SOLUTION, r], v[LEFT, r] = 0.0, v[RIGHT, r]
         if _is_fixed(buffer, r):
             v[LEFT, r] = 0.0
-        given = max(given, abs(v[LEFT, r]))
+        largest = max(largest, abs(v[LEFT, r]))
     for _ in range(_ROUNDS):
         for r in range(count):
             total = v[LEFT, buffer.order[r]]
@@ -241,9 +241,9 @@ def solve(buffer: GroupBuffer, count: int) -> float:
                 total = 0.0
             v[LEFT, r] = total
             left = max(left, abs(total))
-        if left <= 1e-16 * given:
+        if left <= 1e-16 * largest:
             break
-    return left / given if given > 0.0 else 0.0
+    return left / largest if largest > 0.0 else 0.0
 
 
 @inlined
@@ -267,8 +267,8 @@ def right_hand_side(buffer: GroupBuffer, modes: IntArray) -> None:
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        sight = buffer.sights[c]
-        accel = sight[BEND] * sight[ALONG]
+        sight = buffer.kinematics[c]
+        accel = sight[CURVATURE] * sight[ALONG]
         buffer.vectors[RIGHT, number] = (
             times_row(buffer, number, buffer.own, 0) - accel * sight[ALONG]
         )
@@ -296,7 +296,7 @@ def push_and_move(buffer: GroupBuffer, modes: IntArray, members: int) -> float:
         buffer.pushes[c, 0] = buffer.pushes[c, 1] = 0.0
         if modes[c] == APART:
             continue
-        force, grip = buffer.vectors[SOLUTION, number], buffer.sights[c, GRIP]
+        force, grip = buffer.vectors[SOLUTION, number], buffer.kinematics[c, GRIP]
         number += 1
         buffer.pushes[c, 0] = force
         if modes[c] != STICKS:
@@ -317,7 +317,7 @@ def push_and_move(buffer: GroupBuffer, modes: IntArray, members: int) -> float:
 @inlined
 def leads(buffer: GroupBuffer, c: int) -> tuple[float, float, float, float]:
     """Of a contact: gap″, u′, and how much a unit of λ and of τ changes them."""
-    sight = buffer.sights[c]
+    sight = buffer.kinematics[c]
     across, along, soft, rolls = 0.0, 0.0, 0.0, 0.0
     for side in range(2):
         place = buffer.pairs[c, side]
@@ -329,7 +329,7 @@ def leads(buffer: GroupBuffer, c: int) -> tuple[float, float, float, float]:
         along += sign * (ay * sight[NX] - ax * sight[NY]) + arm * aw
         soft += buffer.inverse[place, 0]
         rolls += buffer.inverse[place, 0] + arm * arm * buffer.inverse[place, 1]
-    accel = sight[BEND] * sight[ALONG]
+    accel = sight[CURVATURE] * sight[ALONG]
     return accel * sight[ALONG] - across, along + accel * sight[APPROACH], soft, rolls
 
 

@@ -25,11 +25,11 @@ def _laws_of(scene: SceneSpec, first: int) -> tuple[FloatArray, dict[object, flo
     """The numbers of all laws of restitution, from a place on, and what number calls each."""
     laws: list[FloatArray] = [np.zeros(0)]
     called: dict[object, float] = {}
-    for given in _restitutions(scene):
-        key = given.numbers.tobytes() if isinstance(given, Restitution) else given
-        if not isinstance(given, float | int) and key not in called:
+    for restitution in _restitutions(scene):
+        key = restitution.numbers.tobytes() if isinstance(restitution, Restitution) else restitution
+        if not isinstance(restitution, float | int) and key not in called:
             called[key] = -1.0 - first - sum(map(len, laws))
-            laws.append(restitution_law(given).numbers)
+            laws.append(restitution_law(restitution).numbers)
     return np.concatenate(laws), called
 
 
@@ -107,10 +107,10 @@ def rule_of(scene: SceneSpec) -> str:
     ]
     for number, rim in enumerate(scene.rims):
         own = ("restitution", "tangential", "friction")
-        given = ", ".join(
+        rules = ", ".join(
             f"{name} {_shown(getattr(rim, name))}" for name in own if getattr(rim, name) is not None
         )
-        lines.append(f"rim[{number}]: {rim.puck} and {rim.partner} meet by {given or 'the same'}")
+        lines.append(f"rim[{number}]: {rim.puck} and {rim.partner} meet by {rules or 'the same'}")
     laws = {
         law.name: law for law in map(restitution_law, (
             one for one in _restitutions(scene) if not isinstance(one, float | int)
@@ -158,11 +158,11 @@ def obstacles_of(scene: SceneSpec, called: dict[object, float], makes: FloatArra
     borders = len(borders_of(scene))
     for number in range(borders + len(scene.floor.patches)):
         rows.append([layout.BORDER if number < borders else layout.PATCH, float(number)])
-    found = np.zeros((len(rows), layout.OBSTACLE_COLUMNS))
+    table = np.zeros((len(rows), layout.OBSTACLE_COLUMNS))
     for place, one in enumerate(rows):
-        found[place, : len(one)] = one
-    found[:, layout.OBSTACLE_MAKE] = makes
-    return found
+        table[place, : len(one)] = one
+    table[:, layout.OBSTACLE_MAKE] = makes
+    return table
 
 
 def _standing_in(scene: SceneSpec) -> list[tuple[str, int]]:

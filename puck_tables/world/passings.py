@@ -14,12 +14,12 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel, patience
-from puck_tables.scene.floor_map import ASTRIDE, INSIDE, OUTSIDE
+from puck_tables.scene.floor_map import INSIDE, OUTSIDE, OVERLAPS
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.borders import to_round
 from puck_tables.world.contact_search import (
-    QUIET,
+    SLOWEST,
     arc_step,
     distance_left,
     largest_accel,
@@ -96,13 +96,14 @@ class Passings:
         """See what passed until now."""
         size = 16
         while self.lines.size:
-            own, found = self.copy(), np.zeros((size, COLUMNS))
+            own, passings = self.copy(), np.zeros((size, COLUMNS))
             count = find_passings(
-                engine, own.lines, own.seen, own.segments, np.empty(ROOM), np.empty(6), found
+                engine, own.lines, own.seen, own.segments, np.empty(ROOM), np.empty(6), passings
             )
             if count <= size:
-                order = np.lexsort((found[:count, LINE], found[:count, WHO], found[:count, TIME]))
-                own.rows = np.vstack([self.rows, found[:count][order]])
+                passings = passings[:count]
+                order = np.lexsort((passings[:, LINE], passings[:, WHO], passings[:, TIME]))
+                own.rows = np.vstack([self.rows, passings[order]])
                 self.__dict__.update(own.__dict__)
                 return
             size *= 4
@@ -141,7 +142,7 @@ def _look(
     ox, oy = ax - share * bx, ay - share * by
     far = math.hypot(ox, oy)
     rate = (ox * vx + oy * vy) / far if far > 0.0 else 0.0
-    if side == ASTRIDE:
+    if side == OVERLAPS:
         return radius - far, -rate, arc_step(max(radius - far, 0.0), ox, oy, vx, vy, accel)
     return far - radius, rate, safe_step(max(far - radius, 0.0), rate, accel)
 
@@ -158,9 +159,9 @@ def _note(line: FloatArray, side: int, to: int, state: FloatArray, row: FloatArr
         long = math.hypot(bx, by)
         nx, ny = -by / long, bx / long
         along = ax * bx + ay * by
-        if ASTRIDE not in (side, to) and not 0.0 <= along <= long * long:
+        if OVERLAPS not in (side, to) and not 0.0 <= along <= long * long:
             return False
-    row[WHAT] = ENTERS if to == ASTRIDE else LEAVES if side == ASTRIDE else PASSES
+    row[WHAT] = ENTERS if to == OVERLAPS else LEAVES if side == OVERLAPS else PASSES
     row[AT_X], row[AT_Y] = x, y
     row[ACROSS] = state[VX] * nx + state[VY] * ny
     return True
@@ -171,8 +172,8 @@ def _beyond(line: FloatArray, side: int, radius: float, state: FloatArray) -> in
     """Where a disc comes that leaves a side now."""
     if radius == 0.0:
         return INSIDE if side == OUTSIDE else OUTSIDE
-    if side != ASTRIDE:
-        return ASTRIDE
+    if side != OVERLAPS:
+        return OVERLAPS
     return INSIDE if _away(line, RIM, state[X], state[Y]) < 0.0 else OUTSIDE
 
 
@@ -214,7 +215,7 @@ def _next_passing(
         if gap > distance_left(kind, segment, disc, state, t) * (1.0 + 1e-9):
             return math.inf
         if gap <= rounded:
-            if rate < -QUIET * engine.scale[0]:
+            if rate < -SLOWEST * engine.scale[0]:
                 return t
             step = max(step, moment_there(rounded, abs(rate), accel, t))
         if t + step > last or step == math.inf:

@@ -77,13 +77,13 @@ def _driven_through(scene: SceneSpec, pucks: tuple[ScenePuck, ...]) -> Iterator[
         for k, wall in enumerate(scene.walls):
             gaps[f"wall[{k}]"] = np.array(
                 [gap_to(wall, tuple(place)) for place in after] if wall.point is not None
-                else [gap_along(wall, *way) for way in zip(before, after, strict=True)]
+                else [gap_along(wall, *ends) for ends in zip(before, after, strict=True)]
             )  # fmt: skip
         for k, post in enumerate(scene.posts):
-            way, off = after - before, np.array(post.point) - before
-            square = np.maximum((way * way).sum(axis=1), 1e-300)
-            share = np.clip((way * off).sum(axis=1) / square, 0.0, 1.0)
-            gaps[f"post[{k}]"] = np.hypot(*(off - share[:, None] * way).T) - post.radius
+            ends, off = after - before, np.array(post.point) - before
+            square = np.maximum((ends * ends).sum(axis=1), 1e-300)
+            share = np.clip((ends * off).sum(axis=1) / square, 0.0, 1.0)
+            gaps[f"post[{k}]"] = np.hypot(*(off - share[:, None] * ends).T) - post.radius
         for k, arc in enumerate(scene.arcs):
             if arc.span >= 2.0 * math.pi:
                 gaps[f"arc[{k}]"] = arc.radius - np.hypot(*(after - arc.point).T)

@@ -41,7 +41,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
     a look-up would be cheaper: of round pucks on which only dry friction and a belt act
     """
     pucks = pucks_of(scene)
-    ways: dict[str, list[str]] = {}
+    methods: dict[str, list[str]] = {}
     known: dict[tuple[object, ...], str] = {}
     for number, puck in enumerate(pucks):
         force, hold = puck.force, puck.constraint
@@ -52,16 +52,16 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
         )  # fmt: skip
         if key not in known:
             known[key] = _method_of(scene, puck)
-        ways.setdefault(known[key], []).append(called(puck, number))
+        methods.setdefault(known[key], []).append(called(puck, number))
     lines = []
-    for way, names in ways.items():
+    for method, names in methods.items():
         shown = ""
-        if len(ways) > 1:
+        if len(methods) > 1:
             more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
             shown = f" ({', '.join(names[:_NAMED])}{more})"
-        lines.append(f"{len(names)} puck{'s' if len(names) != 1 else ''} {way}{shown}")
+        lines.append(f"{len(names)} puck{'s' if len(names) != 1 else ''} {method}{shown}")
     model = ", ".join(lines)
-    if any("integrated from" in way and not way.endswith(f": {_CLOSER}") for way in ways):
+    if any("integrated from" in one and not one.endswith(f": {_CLOSER}") for one in methods):
         lines.append(
             "a look-up would be cheaper: of round pucks on which only dry friction and a belt act"
         )
@@ -122,7 +122,7 @@ def _method_of(scene: SceneSpec, puck: ScenePuck) -> str:
         return f"integrated from impact to impact{where}: {', '.join(acts)}"
     if not any(frictions):
         return "in closed form, without dry friction"
-    way = "looked up from impact to impact"
+    method = "looked up from impact to impact"
     if may_be_mixed(scene):
-        way = "looked up from impact or border to the next, integrated astride or over an edge"
-    return f"{way}, over the belt" if belts_of(scene.floor).any() else way
+        method = "looked up from impact or border to the next, integrated astride or over an edge"
+    return f"{method}, over the belt" if belts_of(scene.floor).any() else method

@@ -104,10 +104,10 @@ class Playing:
 
     def _play(self, until: float, first: int) -> int:
         """Advance the engine, whose types are looked at once."""
-        asked = self._engine, until, first, self._room
+        request = self._engine, until, first, self._room
         if self._entry[0] is not self._engine or self._entry[1] is None:
-            self._entry = self._engine, entry_of(advance, *asked)
-        how: int = (self._entry[1] or advance)(*asked)
+            self._entry = self._engine, entry_of(advance, *request)
+        how: int = (self._entry[1] or advance)(*request)
         return how
 
     def _push_on(self) -> None:

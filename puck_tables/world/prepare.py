@@ -128,7 +128,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None, runs: int = 1) -> Sta
     surface = _surface_of(scene.floor)
     spans = np.zeros((count, 2), np.int64)
     forcing: list[FloatArray] = []
-    drives, ways = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
+    drives, motions = np.zeros((count, 2), np.int64), [np.zeros((0, PIECE_COLUMNS))]
     launches = []
     rims, discs[:, layout.MAKE], makes, called = rims_of(scene, pucks)
     for i, puck in enumerate(pucks):
@@ -142,10 +142,10 @@ def prepared(scene: SceneSpec, order: Whole | None = None, runs: int = 1) -> Sta
         velocity = allowed_velocity(launch, puck.constraint, scene.floor)
         states[i, :2], states[i, 2] = start_of(puck), launch.orientation
         if driven:
-            first = sum(map(len, ways))
-            ways.append(pieces_along(rows_of(puck.path)))
-            drives[i] = first, first + len(ways[-1])
-            states[i, THETA] = ways[-1][0, FIRST + THETA]
+            first = sum(map(len, motions))
+            motions.append(pieces_along(rows_of(puck.path)))
+            drives[i] = first, first + len(motions[-1])
+            states[i, THETA] = motions[-1][0, FIRST + THETA]
         elif launch.time > 0.0:
             launches.append([launch.time, i, *velocity, launch.spin])
         else:
@@ -172,7 +172,7 @@ def prepared(scene: SceneSpec, order: Whole | None = None, runs: int = 1) -> Sta
         next_time=np.full(count, math.inf),
         next_partner=np.full(count, NOTHING),
         launches=np.array(sorted(launches)).reshape(-1, LAUNCH_COLUMNS),
-        pieces=np.vstack([*ways, np.zeros((steps, PIECE_COLUMNS))]),
+        pieces=np.vstack([*motions, np.zeros((steps, PIECE_COLUMNS))]),
         drives=drives,
         hangs=np.zeros((count, len(scene.edges)), np.int64),
         events=np.zeros((ROWS + (8 + len(scene.edges)) * count, EVENT_COLUMNS)),
@@ -207,7 +207,7 @@ def _fill_disc(
     if puck.path:
         return
     inertia = puck.mass * puck.inertia_radius**2
-    disc[layout.LIGHTNESS], disc[layout.TURNABILITY] = 1.0 / puck.mass, 1.0 / inertia
+    disc[layout.INVERSE_MASS], disc[layout.INVERSE_INERTIA] = 1.0 / puck.mass, 1.0 / inertia
     disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, puck, inertia)
     disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(puck)
     disc[layout.DRAG : layout.LIES] = drags_of(scene.drag, scene.lateral, puck.mass, inertia)
@@ -243,13 +243,13 @@ def fastest(engine: Engine, states: FloatArray) -> float:
     """The largest slip of these states, of launches to come and of what is driven, m/s."""
     rims = engine.discs[:, layout.RADIUS] * np.abs(states[:, SPIN])
     driven = led_rows(engine)[:, FIRST + VX : FIRST + VY + 1]
-    launched = np.hypot(engine.launches[:, 2], engine.launches[:, 3])
+    speeds = np.hypot(engine.launches[:, 2], engine.launches[:, 3])
     led = np.hypot(*engine.discs[:, [layout.HOLD_VX, layout.HOLD_VY]].T)
     floor = velocities_under(engine, states)
     return max(
         float(np.hypot(np.hypot(states[:, VX], states[:, VY]), rims).max()),
         float(np.hypot(*driven.T).max(initial=0.0)),
-        float(launched.max(initial=0.0)),
+        float(speeds.max(initial=0.0)),
         float(led.max(initial=0.0)),
     ) + max(float(np.hypot(*floor[:, :2].T).max(initial=0.0)), _swiftest(engine, states))
 
@@ -330,9 +330,9 @@ def _strongest(engine: Engine) -> float:
     counts = engine.spans[:, 1] - engine.spans[:, 0]
     discs, forced = engine.discs, np.repeat(np.arange(len(counts)), counts)
     of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
-    given = engine.forcing[:, :FORCED]
-    rows, discs = np.vstack([np.zeros((len(counts), FORCED)), given]), discs[of]
-    light, turns = discs[:, layout.LIGHTNESS], discs[:, layout.TURNABILITY]
+    forces = engine.forcing[:, :FORCED]
+    rows, discs = np.vstack([np.zeros((len(counts), FORCED)), forces]), discs[of]
+    light, turns = discs[:, layout.INVERSE_MASS], discs[:, layout.INVERSE_INERTIA]
     ax = discs[:, layout.PULL_X] + light * rows[:, 1]
     ay = discs[:, layout.PULL_Y] + light * rows[:, 2]
     rim = discs[:, layout.RADIUS] * (discs[:, layout.TWIST] + turns * rows[:, 3])

@@ -54,12 +54,12 @@ from puck_tables.world.group_forces import (
     rest_on_floor,
     slip_of,
 )
-from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
+from puck_tables.world.layout import INVERSE_INERTIA, INVERSE_MASS, RADIUS, write_over
 from puck_tables.world.multipliers import leads, push_and_move, stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT
 
-_TURNS, _PACE = 400, 0.3  # at most; in the time that friction needs to turn a slip, at first
-_SETTLED, _ROUNDING = 1e-10, 1e-14  # of the gain, of the scale of accelerations: turns no more
+_TURNS, _LONGEST = 400, 0.3  # at most; in the time that friction needs to turn a slip, at first
+_CONVERGED, _ROUNDING = 1e-10, 1e-14  # of the gain, of the scale of accelerations: turns no more
 _CREEPS = 8  # rounds
 _SAME = 0.9  # the cosine between directions that are the same
 
@@ -72,23 +72,23 @@ def _turn(
 
     At a pace of J over Q where only friction turns with it; where others lead it, faster.
     """
-    way, scale = buffer.ways[place], buffer.turn_rates[place]
+    slip, scale = buffer.slips[place], buffer.turn_rates[place]
     gain = gain_of(group, number, place, buffer)
-    ox = buffer.rates[place, 0] - buffer.carried[place, 0] - gain * way[0]
-    oy = buffer.rates[place, 1] - buffer.carried[place, 1] - gain * way[1]
-    ow = radius * (buffer.rates[place, 2] - buffer.carried[place, 2] - gain * way[2])
+    ox = buffer.rates[place, 0] - buffer.floor_accels[place, 0] - gain * slip[0]
+    oy = buffer.rates[place, 1] - buffer.floor_accels[place, 1] - gain * slip[1]
+    ow = radius * (buffer.rates[place, 2] - buffer.floor_accels[place, 2] - gain * slip[2])
     off = size(ox, oy, ow)
     if off > 0.97 * scale[1]:
-        scale[0] = max(_PACE, 0.5 * scale[0]) if off > 1.001 * scale[1] else 1.3 * scale[0]
+        scale[0] = max(_LONGEST, 0.5 * scale[0]) if off > 1.001 * scale[1] else 1.3 * scale[0]
     scale[1] = off
     disc = group.discs[number]
-    turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
+    turns = max(disc[INVERSE_MASS], 0.5 * radius * radius * disc[INVERSE_INERTIA])
     share = scale[0] / (load_on(group, number) * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
-    wx, wy, ww = way[0] + share * ox, way[1] + share * oy, radius * way[2] + share * ow
+    wx, wy, ww = slip[0] + share * ox, slip[1] + share * oy, radius * slip[2] + share * ow
     whole = size(wx, wy, ww)
-    way[0], way[1], way[2] = wx / whole, wy / whole, ww / whole / radius
+    slip[0], slip[1], slip[2] = wx / whole, wy / whole, ww / whole / radius
     return off, gain
 
 
@@ -102,16 +102,16 @@ def turn_directions(
     ``find``: also the modes.
     """
     for place in range(members.shape[0]):
-        buffer.turn_rates[place, 0], buffer.turn_rates[place, 1] = _PACE, math.inf
+        buffer.turn_rates[place, 0], buffer.turn_rates[place, 1] = _LONGEST, math.inf
     for _ in range(_TURNS):
-        settled = True
+        steady = True
         for place in range(members.shape[0]):
             if motions[place] == YIELDS:
                 radius = group.discs[members[place], RADIUS]
                 off, gain = _turn(group, members[place], place, radius, buffer)
-                level = max(_SETTLED * abs(gain), _ROUNDING * scales.rate)
-                settled = settled and off <= level
-        if settled:
+                level = max(_CONVERGED * abs(gain), _ROUNDING * scales.rate)
+                steady = steady and off <= level
+        if steady:
             return
         act(group, members, motions, y, power, buffer)
         if not find:
@@ -146,19 +146,19 @@ def overborne(
             more = True
             if mark:
                 place, sign = buffer.pairs[c, side], 2.0 * side - 1.0
-                motions[place], way = YIELDS, buffer.ways[place]
+                motions[place], slip = YIELDS, buffer.slips[place]
                 buffer.firm[place] = group.surface.static
-                way[0], way[1] = sign * buffer.sights[c, NX], sign * buffer.sights[c, NY]
-                way[2] = 0.0
+                slip[0], slip[1] = sign * buffer.kinematics[c, NX], sign * buffer.kinematics[c, NY]
+                slip[2] = 0.0
     for place in range(members.shape[0]):
         if motions[place] == HELD and (mark or not more):
             excess, ux, uy, w = excess_on(group, members, place, contacts, y, buffer)
             if excess > SLACK:
                 more = True
                 if mark:
-                    motions[place], way = YIELDS, buffer.ways[place]
+                    motions[place], slip = YIELDS, buffer.slips[place]
                     buffer.firm[place] = group.surface.static
-                    way[0], way[1], way[2] = ux, uy, w
+                    slip[0], slip[1], slip[2] = ux, uy, w
     return more
 
 
@@ -169,8 +169,8 @@ def find_break_away(
 ) -> bool:  # fmt: skip
     """Modes, pushes and accelerations where members are at rest; whether found.
 
-    ``motions``: those at rest are HELD or YIELDS, which also is the answer; ``buffer.ways``: where
-    those slip that yield.  The sights are of y (m, 6).
+    ``motions``: those at rest are HELD or YIELDS, which also is the answer; ``buffer.slips``: where
+    those slip that yield.  The kinematics are of y (m, 6).
     """
     power = buffer.powers[buffer.powers.shape[0] - 1]
     while True:
@@ -188,19 +188,21 @@ def _energy(group: Group, members: IntArray, y: FloatArray) -> float:
     total = 0.0
     for place in range(members.shape[0]):
         disc = group.discs[members[place]]
-        if disc[LIGHTNESS] > 0.0:
+        if disc[INVERSE_MASS] > 0.0:
             square = y[place, VX] ** 2 + y[place, VX + 1] ** 2
-            total += 0.5 * (square / disc[LIGHTNESS] + y[place, SPIN] ** 2 / disc[TURNABILITY])
+            total += 0.5 * (
+                square / disc[INVERSE_MASS] + y[place, SPIN] ** 2 / disc[INVERSE_INERTIA]
+            )
     return total
 
 
 @inlined
 def _goes_on(group: Group, number: int, place: int, scales: Scales, buffer: GroupBuffer) -> bool:
     """Whether a small slip, if there is one, grows in the direction that it has."""
-    y, way, radius = buffer.states[0, place], buffer.ways[place], group.discs[number, RADIUS]
+    y, line, radius = buffer.states[0, place], buffer.slips[place], group.discs[number, RADIUS]
     slip = slip_of(group, number, y)
     vx, vy, spin = over_floor(group.surface, group.discs[number], y)
-    along = way[0] * vx + way[1] * vy + radius * radius * way[2] * spin
+    along = line[0] * vx + line[1] * vy + radius * radius * line[2] * spin
     gains = gain_of(group, number, place, buffer) > GAINS * scales.rate
     return slip == 0.0 or (gains and along > _SAME * slip)
 
@@ -216,10 +218,10 @@ def _stop_creeping(
     """
     stopped, heat = buffer.modes[1, :contacts], 0.0
     for _ in range(_CREEPS):
-        look(group, members, buffer.pairs[:contacts], y, buffer.sights)
+        look(group, members, buffer.pairs[:contacts], y, buffer.kinematics)
         again = False
         for c in range(contacts):
-            comes = buffer.sights[c, APPROACH]
+            comes = buffer.kinematics[c, APPROACH]
             if modes[c] == APART and stopped[c] == APART and 0.0 < comes <= HARDLY * scales.speed:
                 stopped[c], again = 1, True
         if not again:
@@ -233,14 +235,14 @@ def _come_to_rest(
     group: Group, members: IntArray, motions: IntArray, y: FloatArray, scales: Scales
 ) -> bool:
     """Put to rest whom the others have stopped; whether there are any."""
-    found = False
+    any_rests = False
     for place in range(members.shape[0]):
         number = members[place]
         small = slip_of(group, number, y[place]) <= STILL * scales.speed
         if small and motions[place] == MOVES and can_rest(group, number):
-            motions[place], found = HELD, True
+            motions[place], any_rests = HELD, True
             rest_on_floor(group, number, y[place])
-    return found
+    return any_rests
 
 
 @inner
@@ -276,7 +278,7 @@ def press(
         write_over(y[place], states[number])
         motions[place] = MOVES
         choose_belt(group.regions, group.discs, number, y[place])
-        if group.discs[number, LIGHTNESS] == 0.0:
+        if group.discs[number, INVERSE_MASS] == 0.0:
             motions[place] = DRIVEN
         elif can_rest(group, number):
             q = slip_of(group, number, y[place])
@@ -286,23 +288,23 @@ def press(
             elif q <= small_slip(scales):
                 motions[place] = YIELDS
                 vx, vy, spin = over_floor(group.surface, group.discs[number], y[place])
-                way, buffer.firm[place] = buffer.ways[place], 1.0
-                way[0], way[1], way[2] = vx / q, vy / q, spin / q
+                slip, buffer.firm[place] = buffer.slips[place], 1.0
+                slip[0], slip[1], slip[2] = vx / q, vy / q, spin / q
     count_rows(group, members, t, buffer)
     place_driven(group, members, motions, t, y, buffer)
     stopped, again, rounds = buffer.modes[1, : contacts.shape[0]], True, 0
     while again:
         patience(1)
         rounds += 1
-        look(group, members, pairs, y, buffer.sights)
+        look(group, members, pairs, y, buffer.kinematics)
         look_at_ties(group, members, t, y, buffer)
         for c in range(contacts.shape[0]):
-            modes[c] = rim_mode(buffer.sights[c], scales.speed)
+            modes[c] = rim_mode(buffer.kinematics[c], scales.speed)
             if modes[c] == STICKS:
                 modes[c] = gives[c]
             stopped[c] = STICKS
-            if modes[c] != STICKS and buffer.sights[c, GRIP] == math.inf:
-                buffer.sights[c, GRIP], stopped[c] = 0.0, APART  # first, whether it presses
+            if modes[c] != STICKS and buffer.kinematics[c, GRIP] == math.inf:
+                buffer.kinematics[c, GRIP], stopped[c] = 0.0, APART  # first, whether it presses
         if not find_break_away(group, members, modes, motions, y, scales, buffer):
             return UNSOLVED
         again = False
@@ -320,8 +322,8 @@ def press(
             continue
         for c in range(contacts.shape[0]):
             if stopped[c] == APART and modes[c] != APART:
-                buffer.sights[c, GRIP], stopped[c], again = math.inf, STICKS, True
-            elif modes[c] == APART or rim_mode(buffer.sights[c], scales.speed) != STICKS:
+                buffer.kinematics[c, GRIP], stopped[c], again = math.inf, STICKS, True
+            elif modes[c] == APART or rim_mode(buffer.kinematics[c], scales.speed) != STICKS:
                 stopped[c] = modes[c]
         before = _energy(group, members, y)
         heat = stop_slips(buffer, stopped, y)

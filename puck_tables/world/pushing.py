@@ -42,7 +42,7 @@ from puck_tables.world.group import (
     small_slip,
 )
 from puck_tables.world.group_forces import can_rest, count_rows, slip_at
-from puck_tables.world.layout import LIES, LIGHTNESS, RADIUS, ROUNDED, write_over
+from puck_tables.world.layout import INVERSE_MASS, LIES, RADIUS, ROUNDED, write_over
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.stepping import (
     BEGIN,
@@ -78,7 +78,7 @@ def _next_row(
         if row < group.spans[members[place], 1]:
             end = min(end, group.forcing[row, 0])
         if motions[place] == DRIVEN:
-            first, last = group.reels[members[place], 0], group.reels[members[place], 1]
+            first, last = group.drives[members[place], 0], group.drives[members[place], 1]
             row = group.films[piece_at(group.films, first, last, t)]
             turns = row[START] + row[DURATION]
             if t < turns < end:
@@ -112,7 +112,7 @@ def _comes_over(group: Group, members: IntArray, buffer: GroupBuffer) -> int:
     One that only just touches one has long been there.
     """
     for place in range(members.shape[0]):
-        if group.discs[members[place], LIGHTNESS] > 0.0:
+        if group.discs[members[place], INVERSE_MASS] > 0.0:
             before = _room_of(group, members, place, buffer.states[0])
             if before > 0.0 > _room_of(group, members, place, buffer.states[1]):
                 return place
@@ -216,34 +216,34 @@ def _first_change(
 
     ``still_there``: whether anybody is at rest whom somebody touches.
     """
-    how, which, cut = TIME_UP, -1, False
+    how, which, is_short = TIME_UP, -1, False
     while True:
         c, kind = first_negative(buffer, 1, contacts)
         if c < 0:
             break
-        how, which, cut = PARTS + kind, c, True
+        how, which, is_short = PARTS + kind, c, True
         length = _moment(group, members, modes, motions, t, length, c, kind, scales, buffer)
         if first_negative(buffer, 1, contacts) == (c, kind):
             break
     if still_there:
         goes = sets_off(group, members, modes, motions, scales, buffer)
         if goes < 0:
-            return UNSOLVED, which, length, cut
+            return UNSOLVED, which, length, is_short
         if goes > 0:
-            how, which, cut = SETS_OFF, -1, True
+            how, which, is_short = SETS_OFF, -1, True
             length = _moment(
                 group, members, modes, motions, t, length, _NOBODY, BEGIN, scales, buffer
             )
     if how == TIME_UP and group.discs.shape[1] > LIES:  # there are borders on the floor
         which = _comes_over(group, members, buffer)
         if which >= 0:
-            how, cut = OFF_BORDER, True
+            how, is_short = OFF_BORDER, True
             length = _moment(
                 group, members, modes, motions, t, length, which, _OVER_BORDER, scales, buffer
             )
         elif _changes_belts(group, members, buffer):
             how = OFF_BORDER
-    return how, which, length, cut
+    return how, which, length, is_short
 
 
 @inlined
@@ -361,7 +361,7 @@ def follow(
             h = length * shorter
             continue
         h = length * min(shorter, grows)
-        how, which, length, cut = _first_change(
+        how, which, length, is_short = _first_change(
             group, members, modes, motions, contacts.shape[0], t, length, still_there, scales,
             buffer,
         )  # fmt: skip
@@ -373,7 +373,7 @@ def follow(
         how, which, begun = _slips(group, members, motions, t, length, how, which, scales, buffer)
         count += 1
         passed += length
-        t = target if landed and not cut else start + passed
+        t = target if landed and not is_short else start + passed
         _go_on_from(size, contacts.shape[0], buffer)
         if begun:
             rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)

@@ -16,7 +16,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.scene.equations import (
     FIRST,
-    GIVEN,
+    FORCE_WORK,
     LAMBDA,
     ROW,
     SIZE,
@@ -25,7 +25,7 @@ from puck_tables.scene.equations import (
     to_laboratory,
 )
 from puck_tables.scene.friction import SPIN, X, Y
-from puck_tables.scene.ingredients import FREE, NO_WAY, SLIDES, Phase
+from puck_tables.scene.ingredients import FREE, NO_DIRECTION, SLIDES, Phase
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.parts import Floor
 from puck_tables.world import engine_state as g
@@ -33,7 +33,7 @@ from puck_tables.world.engine_state import (
     IMPACT,
     N_EVENTS,
     N_HISTORY,
-    N_WORKS,
+    N_WORK_ROWS,
     NORMAL_X,
     NORMAL_Y,
     PARTNER,
@@ -50,8 +50,8 @@ from puck_tables.world.layout import (
     DECEL,
     HOLD,
     INTEGRATED,
+    INVERSE_MASS,
     KIND,
-    LIGHTNESS,
     NO_CUSHION,
     RADIUS,
     normal_to,
@@ -104,7 +104,7 @@ def _fill_reactions(
         for n in range(times.size):
             patience(1)
             for k in range(SIZE):
-                y[k] = states[n, i, k] if k < GIVEN else 0.0
+                y[k] = states[n, i, k] if k < FORCE_WORK else 0.0
             lie_at(engine, i, y[X], y[Y])
             to_laboratory(model.surface, y, -1.0)
             slips = slip_speed(engine.discs[i, RADIUS], y) > at_rest_below(engine)
@@ -115,7 +115,7 @@ def _fill_reactions(
                 continue
             rows = rows_passed(drive, 0, len(drive), times[n])
             friction = friction_under_disc(engine.regions, engine.discs, i)
-            phase = Phase(model, friction, rows, SLIDES, NO_WAY, 0.0)
+            phase = Phase(model, friction, rows, SLIDES, NO_DIRECTION, 0.0)
             rates(phase, times[n], y, work, FIRST)
             out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]
 
@@ -151,24 +151,24 @@ def pushed_back(engine: Engine, i: int, since: Reported) -> tuple[FloatArray, Re
     """
     now, counts = float(engine.clock[0]), engine.counts
     impulse = _of_impacts(engine.events[since.events : counts[N_EVENTS]], i)
-    still_open = int(counts[N_WORKS])
+    still_open = int(counts[N_WORK_ROWS])
     ends: dict[int, float] = {}
-    for n in range(since.open, int(counts[N_WORKS])):
+    for n in range(since.open, int(counts[N_WORK_ROWS])):
         row = engine.work_rows[n]
         segment = int(row[SEGMENT])
         if segment not in ends:
             ends[segment] = _end_of(engine, segment)
-        cut = ends[segment]
-        if min(float(row[BEGINS] + row[DURATION]), cut) > now:
+        end = ends[segment]
+        if min(float(row[BEGINS] + row[DURATION]), end) > now:
             still_open = min(still_open, n)
         driver = int(row[LED_BY])
-        if driver not in (i, SEVERAL) or min(now, cut) < row[BEGINS]:
+        if driver not in (i, SEVERAL) or min(now, end) < row[BEGINS]:
             continue
-        given = _worked(row, min(now, cut))
+        total = _worked(row, min(now, end))
         if n < since.work_rows:
-            given -= _worked(row, min(since.time, cut))
-        impulse += given if driver == i else math.nan
-    return impulse, Reported(now, int(counts[N_EVENTS]), int(counts[N_WORKS]), still_open)
+            total -= _worked(row, min(since.time, end))
+        impulse += total if driver == i else math.nan
+    return impulse, Reported(now, int(counts[N_EVENTS]), int(counts[N_WORK_ROWS]), still_open)
 
 
 def _of_impacts(events: FloatArray, i: int) -> FloatArray:
@@ -198,13 +198,13 @@ def _end_of(engine: Engine, segment: int) -> float:
 
 def rests_of(engine: g.Engine) -> list[Rest]:
     """Every stick and slip until now; what an impact or a launch sets off is no slip."""
-    found: list[Rest] = []
+    rests: list[Rest] = []
     for rest in _described(engine):
-        if rest[1] == "slip" and found and found[-1][:3] == (rest[0], "stick", rest[2]):
-            found.pop()  # it stopped, and was not held
+        if rest[1] == "slip" and rests and rests[-1][:3] == (rest[0], "stick", rest[2]):
+            rests.pop()  # it stopped, and was not held
         else:
-            found.append(rest)
-    return found
+            rests.append(rest)
+    return rests
 
 
 def _described(engine: g.Engine) -> list[Rest]:
@@ -224,9 +224,9 @@ def _described(engine: g.Engine) -> list[Rest]:
         there = states_on(engine, unsure, middles)
         moves[unsure] = slips_over(engine, discs[unsure], there, middles) > STUCK * engine.scale[0]
     # none of what is driven, or what nothing can hold
-    held = (rows[:, LIGHTNESS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
+    held = (rows[:, INVERSE_MASS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")
-    found: list[tuple[int, float, str]] = []
+    intervals: list[tuple[int, float, str]] = []
     disc, rested = -1, True
     for n in own[held[discs[own]]].tolist():
         if discs[n] != disc:
@@ -235,17 +235,20 @@ def _described(engine: g.Engine) -> list[Rest]:
             continue
         first, last = resting[n]
         if first and not rested:
-            found.append((n, starts[n], "stick"))
+            intervals.append((n, starts[n], "stick"))
         if first and moves[n] and kinds[n] == PATH and starts[n] > 0.0:
-            found.append((n, starts[n], "slip"))
+            intervals.append((n, starts[n], "slip"))
         rested = last
         if last and moves[n]:
-            found.append((n, min(stops[n], ends[n]), "stick"))
-    at, times = np.array([n for n, *_ in found], np.int64), np.array([one[1] for one in found])
-    places = states_on(engine, at, times)[:, [X, Y]].tolist() if found else []
+            intervals.append((n, min(stops[n], ends[n]), "stick"))
+    at, times = (
+        np.array([n for n, *_ in intervals], np.int64),
+        np.array([one[1] for one in intervals]),
+    )
+    places = states_on(engine, at, times)[:, [X, Y]].tolist() if intervals else []
     return [
         (float(time), what, int(discs[n]), x, y)
-        for (n, time, what), (x, y) in zip(found, places, strict=True)
+        for (n, time, what), (x, y) in zip(intervals, places, strict=True)
     ]
 
 

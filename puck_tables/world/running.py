@@ -26,7 +26,7 @@ from puck_tables.world.lasting import (
     limits_of,
     next_target,
 )
-from puck_tables.world.layout import LIGHTNESS
+from puck_tables.world.layout import INVERSE_MASS
 from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
@@ -117,9 +117,9 @@ class Running(Playing):
 
         inf: it still moves; 0: it has lain there since the start.
         """
-        found = np.empty(len(self.names))
-        fill_motion_ends(self._engine, self._room, found)
-        return found[self._place]
+        ends = np.empty(len(self.names))
+        fill_motion_ends(self._engine, self._room, ends)
+        return ends[self._place]
 
     def at(self, time: float) -> FloatArray:
         """States (pucks, 6) at any time: as they were, or will be if nobody interferes.
@@ -202,11 +202,11 @@ class Running(Playing):
             return self._come_to_rest()
 
     def _come_to_rest(self) -> tuple[float, bool]:
-        limits, given = limits_of(self._engine, self._engine.scale[None, :2])
+        limits, prescribed = limits_of(self._engine, self._engine.scale[None, :2])
         ends, how, target = np.empty(len(self.names)), GOES_ON, self.time
         while how == GOES_ON:
             self._advance(target)
-            how, target = next_target(self._engine, float(limits[0]), given, self._room, ends)
+            how, target = next_target(self._engine, float(limits[0]), prescribed, self._room, ends)
         who = "a puck" if len(self.names) > 1 else "the puck"
         if how == NEVER_ENDS:
             raise InputError(
@@ -264,7 +264,7 @@ class Running(Playing):
         rows = self._engine.events[first:count]
         columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
                    g.RUB, g.LOST]  # fmt: skip
-        found = [
+        events = [
             Event(
                 time,
                 g.EVENTS[int(what)],
@@ -274,11 +274,11 @@ class Running(Playing):
             )
             for time, what, who, partner, *numbers in rows[:, columns].tolist()
         ]
-        found += [
+        events += [
             Event(time, g.EVENTS[int(what)], self._name(who), called_line(lines, int(k)), *numbers)
             for time, what, who, k, *numbers in self._passings.rows[passed:].tolist()
         ]
-        return sorted(found, key=lambda event: event.time) if lines else found
+        return sorted(events, key=lambda event: event.time) if lines else events
 
     def reaction(self, puck: int | str) -> FloatArray:
         """What pucks gave one that is driven since the last call, array (2,), N s.
@@ -304,8 +304,8 @@ class Running(Playing):
         [-0.2, 0.0]
         """
         i = self._led(puck, False)
-        impulse, told = pushed_back(self._engine, i, self._described.get(i, Reported()))
-        self._described = {**self._described, i: told}
+        impulse, reported = pushed_back(self._engine, i, self._described.get(i, Reported()))
+        self._described = {**self._described, i: reported}
         return impulse
 
     def _in_play(self, puck: int | str) -> int:
@@ -318,7 +318,7 @@ class Running(Playing):
     def _led(self, puck: int | str, in_play: bool = True) -> int:
         """The disc of a puck that is led."""
         i = self._in_play(puck) if in_play else int(self._place[number_of(puck, self.names)])
-        if self._engine.discs[i, LIGHTNESS] > 0.0:
+        if self._engine.discs[i, INVERSE_MASS] > 0.0:
             raise InputError(
                 f"{self._name(i)} is not led by hand: give it a path of one row, path=[[0, x, y]], "
                 "or strike it"

@@ -72,8 +72,8 @@ class Runs(Work):
                 f"(such as {own} = '0:10:101')"
             )
         self.shape = tuple(values.size for values in self.axes.values()) if shape is None else shape
-        self.names, self._found = BoardCase.names(scene), BoardCase.columns(scene)
-        self.columns: Mapping[str, tuple[int, ...]] = self._found
+        self.names, self._columns = BoardCase.names(scene), BoardCase.columns(scene)
+        self.columns: Mapping[str, tuple[int, ...]] = self._columns
         self.block = min(MOST, max(FEWEST, self.size // 64))
         self._whole, self.files = tables_of(scene), files_of(scene)
         self._read = files_named(self._whole) if read is None else read
@@ -108,13 +108,13 @@ class Runs(Work):
     def numbers(self, start: int, stop: int) -> dict[str, FloatArray]:
         """What differs between runs, by path, of some of them."""
         places = np.unravel_index(np.arange(start, stop), self.shape)
-        found: dict[str, FloatArray] = {}
+        result: dict[str, FloatArray] = {}
         for (path, values), place in zip(self.scene.ranges.items(), places, strict=True):
             if is_batch(path):
-                found |= zip(launch_paths(path), values[place].T, strict=True)
+                result |= zip(launch_paths(path), values[place].T, strict=True)
             else:
-                found[path] = values[place]
-        return found
+                result[path] = values[place]
+        return result
 
     def along(self, run: int) -> dict[str, float]:
         """Where a run is along the axes."""
@@ -137,18 +137,18 @@ class Runs(Work):
         outer = {path: values.tolist() for path, values in numbers.items()
                  if path not in self._inner}  # fmt: skip
         keys = list(zip(*outer.values(), strict=True)) or [()] * count
-        found: Columns = {name: np.empty((count, *one)) for name, one in self._found.items()}
-        found[self.code] = np.empty(count, np.int8)
+        columns: Columns = {name: np.empty((count, *one)) for name, one in self._columns.items()}
+        columns[self.code] = np.empty(count, np.int8)
         begin = 0
         while begin < count:  # runs that differ in nothing but launches, together
             last = begin + 1
             while last < count and keys[last] == keys[begin]:
                 last += 1
             part = {path: values[begin:last] for path, values in numbers.items()}
-            self._together(tuple(zip(outer, keys[begin], strict=True)), part, found, begin, last)
+            self._together(tuple(zip(outer, keys[begin], strict=True)), part, columns, begin, last)
             begin = last
         refuse_changed(self._whole, self._read)
-        return found
+        return columns
 
     def _together(
         self, fixed: tuple[tuple[str, float], ...], numbers: Mapping[str, FloatArray],
@@ -169,7 +169,7 @@ class Runs(Work):
                 one = {path: values[i : i + 1] for path, values in numbers.items()}
                 self._together(fixed, one, parts, start + i, start + i + 1)
             return
-        for name in self._found:
+        for name in self._columns:
             parts[name][start:stop] = np.nan if end is None else ends[name]
         parts[self.code][start:stop] = REFUSED if end is None else end
 
@@ -227,8 +227,8 @@ class Runs(Work):
         """The map, or the samples."""
         tally = Tally.of(columns[self.code])
         case = self._first(tally)
-        told = tuple(self.without_end(tally))
-        return self._result(columns, case.model, case.explanation, told)
+        remarks = tuple(self.without_end(tally))
+        return self._result(columns, case.model, case.explanation, remarks)
 
     def _result(
         self, columns: Columns, model: str, explanation: str, parts: tuple[str, ...]
@@ -237,7 +237,7 @@ class Runs(Work):
         end = kept.pop(self.code)
         return self._ends(
             scene=self.scene, names=self.names, columns=kept, end=end, model=model,
-            explanation=explanation, told=parts, files=self.files,
+            explanation=explanation, endless=parts, files=self.files,
         )  # fmt: skip
 
     def _ends(self, **ends: Any) -> SceneEnds:
@@ -274,7 +274,7 @@ class DrawnRuns(Runs):
         except InputError as error:
             raise InputError(f"samples: in the middle of what is drawn, {error}") from None
         super().__init__(scene, part, read, {path: np.zeros(0) for path in spreads}, (count,))
-        self.columns = {**{plain_name(path): () for path in spreads}, **self._found}
+        self.columns = {**{plain_name(path): () for path in spreads}, **self._columns}
 
     def __reduce__(self) -> Any:
         return DrawnRuns, (

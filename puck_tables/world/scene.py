@@ -230,8 +230,8 @@ class Scene(SceneSpec):
         from puck_tables.world.runs import sample
 
         how = Doing(threads, chunk, progress, store, cluster, overwrite)
-        found: Sample = sample(self, count, seed, spreads, how)
-        return found
+        result: Sample = sample(self, count, seed, spreads, how)
+        return result
 
     def world(self) -> World:
         """The scene as a board to play on: advance it, strike pucks, look ahead.

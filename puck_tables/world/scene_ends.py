@@ -28,8 +28,8 @@ class SceneEnds(Result):
     ``names``: of the pucks, none where the scene has one ``puck``; ``columns``: arrays by name, of
     the shape of the runs, of several pucks with the pucks last, NaN for a run without an end;
     ``end``: how each ends, an index of ``meanings``; ``model``, and ``explanation`` why it was
-    taken, of the first run that is valid; ``told``: what :meth:`without_end` says; ``files``: what
-    stands in the files that the scene names, by path; ``whose``: the puck that it is of.
+    taken, of the first run that is valid; ``endless``: what :meth:`without_end` says; ``files``:
+    what stands in the files that the scene names, by path; ``whose``: the puck that it is of.
     """
 
     scene: SceneSpec
@@ -38,7 +38,7 @@ class SceneEnds(Result):
     end: npt.NDArray[np.int8] = field(repr=False)
     model: str = ""
     explanation: str = ""
-    told: tuple[str, ...] = ()
+    endless: tuple[str, ...] = ()
     files: Mapping[str, str] = field(default_factory=dict)
     whose: str = ""
 
@@ -105,9 +105,9 @@ class SceneEnds(Result):
 
     def dataset(self) -> Dataset:
         """The ends and what follows from them; the scene and its files as texts."""
-        found = self.labelled()
-        more = self._over(derived(self.columns), found.columns["end"].dims)
-        return replace(found, columns={**found.columns, **more})
+        result = self.labelled()
+        more = self._over(derived(self.columns), result.columns["end"].dims)
+        return replace(result, columns={**result.columns, **more})
 
     def _over(
         self, columns: Mapping[str, FloatArray], dims: tuple[str, ...]
@@ -124,7 +124,7 @@ class SceneEnds(Result):
 
     def without_end(self) -> list[str]:
         """A line for each way in which runs have no end: how many, the first, and what to do."""
-        return list(self.told)
+        return list(self.endless)
 
 
 def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
@@ -265,6 +265,6 @@ class Sample(SceneEnds, Summary):
     def labelled(self) -> Dataset:
         """The columns with names and units, what was drawn among them."""
         drawn = {f"drawn_{plain_name(path)}": str(one) for path, one in self.spreads.items()}
-        found = super().labelled()
-        attributes = {**found.attributes, **drawn, "seed": self.seed}
-        return replace(found, attributes=attributes)
+        dataset = super().labelled()
+        attributes = {**dataset.attributes, **drawn, "seed": self.seed}
+        return replace(dataset, attributes=attributes)

@@ -11,7 +11,7 @@ kinds
       v = v₀ e^{−γs}/(1 + w v₀ E),   path = ln(1 + w v₀ E)/w;
 
 - PATH is a path in pieces (:mod:`puck_tables.world.paths`): integrated, or given;
-- CARRIED rests on a turntable, and goes round with it.
+- RIDING rests on a turntable, and goes round with it.
 
 On a belt the first three are motions over the belt, and drift with it.
 """
@@ -41,7 +41,7 @@ from puck_tables.stopping.similarity_lookup import (
 from puck_tables.world.layout import DECEL, DELTA, DRAG, RADIUS, feels_floor, write_over
 from puck_tables.world.paths import on_piece, piece_at
 
-STILL, LOOKED_UP, DAMPED, PATH, GONE, CARRIED = range(6)
+STILL, LOOKED_UP, DAMPED, PATH, GONE, RIDING = range(6)
 
 KNOWN = LAUNCH_COLUMNS  # before it the launch: vx, vy, ω, δ, J, r
 START = LAUNCH_COLUMNS + LAUNCH_ROWS  # s, when; behind what is known of the launch
@@ -68,8 +68,8 @@ class Lookups(NamedTuple):
 @inlined
 def _damped_state(segment: FloatArray, disc: FloatArray, time: float, out: FloatArray) -> None:
     vx, vy, spin = segment[0], segment[1], segment[2]
-    left, way, turns, angle = damped(disc[DRAG:], math.hypot(vx, vy), spin, time)
-    out[X], out[Y] = segment[PLACE_X] + vx * way, segment[PLACE_Y] + vy * way
+    left, length, turns, angle = damped(disc[DRAG:], math.hypot(vx, vy), spin, time)
+    out[X], out[Y] = segment[PLACE_X] + vx * length, segment[PLACE_Y] + vy * length
     out[THETA] = segment[ANGLE] + spin * angle
     out[VX], out[VY] = vx * left, vy * left
     out[SPIN] = spin * turns
@@ -88,7 +88,7 @@ def moves_until(kind: int, segment: FloatArray) -> float:
         return math.inf
     if kind in (LOOKED_UP, PATH):
         return segment[UNTIL]
-    return math.inf if kind in (DAMPED, CARRIED) else -math.inf
+    return math.inf if kind in (DAMPED, RIDING) else -math.inf
 
 
 @inner
@@ -98,17 +98,17 @@ def state_at(
 ) -> None:  # fmt: skip
     """X, y, angle, vx, vy, spin at the time t into ``out`` (6,)."""
     if kind == LOOKED_UP:
-        found = room
-        look_up_state(segment, t - segment[START], lookups.states, found)
+        looked_up = room
+        look_up_state(segment, t - segment[START], lookups.states, looked_up)
         later = 1.0 if t > segment[START] else 0.0
-        out[X] = segment[PLACE_X] + (found[PUCK_X] - later * segment[OFF_X])
-        out[Y] = segment[PLACE_Y] + (found[PUCK_Y] - later * segment[OFF_Y])
-        out[THETA] = segment[ANGLE] + (found[ORIENTATION] - later * segment[OFF_ANGLE])
-        speed = found[SPEED]
-        out[VX], out[VY], out[SPIN] = 0.0, 0.0, found[PUCK_SPIN]
+        out[X] = segment[PLACE_X] + (looked_up[PUCK_X] - later * segment[OFF_X])
+        out[Y] = segment[PLACE_Y] + (looked_up[PUCK_Y] - later * segment[OFF_Y])
+        out[THETA] = segment[ANGLE] + (looked_up[ORIENTATION] - later * segment[OFF_ANGLE])
+        speed = looked_up[SPEED]
+        out[VX], out[VY], out[SPIN] = 0.0, 0.0, looked_up[PUCK_SPIN]
         if speed > 0.0:
             start = math.hypot(segment[0], segment[1])
-            cosine, sine = math.cos(found[HEADING]), math.sin(found[HEADING])
+            cosine, sine = math.cos(looked_up[HEADING]), math.sin(looked_up[HEADING])
             east, north = segment[0] / start, segment[1] / start
             out[VX] = speed * (cosine * east - sine * north)
             out[VY] = speed * (sine * east + cosine * north)
@@ -118,7 +118,7 @@ def state_at(
         piece = piece_at(pieces, int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]), t)
         on_piece(pieces[piece], t, room)
         write_over(out, room[:6])
-    elif kind == CARRIED:
+    elif kind == RIDING:
         turning = segment[2]
         angle = turning * (t - segment[START])
         cosine, sine = math.cos(angle), math.sin(angle)
@@ -164,7 +164,7 @@ def start_segment(
         )  # fmt: skip
         segment[FASTEST] = math.hypot(sx, sy)
         segment[STRONGEST] = abs(turning) * segment[FASTEST]
-        return CARRIED
+        return RIDING
     segment[DRIFT_X], segment[DRIFT_Y] = sx, sy
     segment[FASTEST] = speed + math.hypot(sx, sy)
     if speed == 0.0 and spin == 0.0:
@@ -175,10 +175,10 @@ def start_segment(
         )
         segment[UNTIL] = t + segment[KNOWN + TIME]
         # places that are looked up are off by some 1e-12 of Q²/J: discs that touch must not jump
-        found = room
-        look_up_state(segment, _SOON * segment[KNOWN + TIME], lookups.states, found)
-        segment[OFF_X], segment[OFF_Y] = found[PUCK_X], found[PUCK_Y]
-        segment[OFF_ANGLE] = found[ORIENTATION]
+        looked_up = room
+        look_up_state(segment, _SOON * segment[KNOWN + TIME], lookups.states, looked_up)
+        segment[OFF_X], segment[OFF_Y] = looked_up[PUCK_X], looked_up[PUCK_Y]
+        segment[OFF_ANGLE] = looked_up[ORIENTATION]
         segment[STRONGEST] = disc[DECEL]
         return LOOKED_UP
     segment[STRONGEST] = speed * per_speed(disc[DRAG:], speed)
@@ -198,7 +198,7 @@ def corridor(
     x, y = segment[PLACE_X], segment[PLACE_Y]
     if drifts(segment):
         return x, y, x, y, segment[FASTEST] * (horizon - segment[START])
-    if kind == CARRIED:
+    if kind == RIDING:
         return segment[0], segment[1], segment[0], segment[1], segment[FASTEST] / abs(segment[2])
     if kind == LOOKED_UP:
         across, up = segment[KNOWN + STOP_X], segment[KNOWN + STOP_Y]
@@ -208,10 +208,10 @@ def corridor(
     if kind in (DAMPED, PATH):
         x, y = state[X], state[Y]
     if kind == DAMPED:
-        way = min(horizon - now, farthest(disc[DRAG:], 1.0))
-        if way == math.inf:
+        reach = min(horizon - now, farthest(disc[DRAG:], 1.0))
+        if reach == math.inf:
             return x, y, x, y, math.inf
-        return x, y, x + way * state[VX], y + way * state[VY], 0.0
+        return x, y, x + reach * state[VX], y + reach * state[VY], 0.0
     if kind == PATH:
         return x, y, x, y, segment[FASTEST] * (min(horizon, segment[UNTIL]) - now)
     return x, y, x, y, 0.0

@@ -10,7 +10,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import ROW
-from puck_tables.scene.floor_map import ASTRIDE, INSIDE, OUTSIDE
+from puck_tables.scene.floor_map import INSIDE, OUTSIDE, OVERLAPS
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, friction_force
 from puck_tables.scene.ingredients import floor_velocity, is_mixed
 from puck_tables.scene.over_time import rows_passed
@@ -39,7 +39,7 @@ from puck_tables.world.engine_state import (
     N_HISTORY,
     N_IMPACTS,
     N_PIECES,
-    N_WORKS,
+    N_WORK_ROWS,
     NORMAL_X,
     NORMAL_Y,
     OVERHANGS,
@@ -70,12 +70,12 @@ from puck_tables.world.group import GroupBuffer, buffer_for
 from puck_tables.world.holds import work_of_hold
 from puck_tables.world.layout import (
     EDGE_NUMBER,
+    INVERSE_INERTIA,
+    INVERSE_MASS,
     KIND,
     LIES,
-    LIGHTNESS,
     OVERHANG,
     RADIUS,
-    TURNABILITY,
     A,
     kinetic,
     write_over,
@@ -108,7 +108,7 @@ from puck_tables.world.step_pieces import BUFFER_ROWS
 
 # of a disc while an event is worked on: not concerned, concerned, its contacts are known, was to
 # meet one that is concerned, has set off; is to get a state that nobody has looked at
-NOT_CONCERNED, CONCERNED, LOOKED_AT, DISAPPOINTED, SENT, GIVEN = range(6)
+CURRENT, STALE, LOOKED_AT, PARTNER_STALE, SENT, BY_HAND = range(6)
 
 _MOMENT = 1e-3  # of Q/J: what no step follows loses its balance as soon, where it tips
 _AT_ONCE = 256  # contacts whose impacts are found together, and discs led among them, at most
@@ -214,7 +214,7 @@ def lacks_pieces(engine: Engine) -> bool:
     """Whether one path more may not find room."""
     return (
         engine.counts[N_PIECES] + LONGEST > engine.pieces.shape[0]
-        or engine.counts[N_WORKS] + LONGEST > engine.work_rows.shape[0]
+        or engine.counts[N_WORK_ROWS] + LONGEST > engine.work_rows.shape[0]
     )
 
 
@@ -230,10 +230,10 @@ def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
             state[X] + h * state[VX], state[Y] + h * state[VY], state[THETA] + h * state[SPIN]
         )  # fmt: skip
         state[VX], state[VY] = (
-            state[VX] + h * disc[LIGHTNESS] * fx,
-            state[VY] + h * disc[LIGHTNESS] * fy,
+            state[VX] + h * disc[INVERSE_MASS] * fx,
+            state[VY] + h * disc[INVERSE_MASS] * fy,
         )
-        state[SPIN] += h * disc[TURNABILITY] * torque
+        state[SPIN] += h * disc[INVERSE_INERTIA] * torque
         passed = rows_passed(rows, 0, len(rows), t + h)
         friction = friction_now(
             engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t + h, state
@@ -257,7 +257,7 @@ def integrate(engine: Engine, i: int, t: float, room: Room) -> bool:
     elif done:
         first = engine.counts[N_PIECES]
         engine.counts[N_PIECES] += count
-        engine.counts[N_WORKS] += count
+        engine.counts[N_WORK_ROWS] += count
         fly_along(engine.segments[i], engine.pieces, first, first + count, t, until)
         engine.segments[i, RIDES] = 1.0 if held else 0.0
         engine.kinds[i] = PATH
@@ -306,7 +306,7 @@ def _work(
     """
     disc, state = engine.discs[i], room.states[i]
     turn = disc[RADIUS] * rub
-    if disc[LIGHTNESS] > 0.0:
+    if disc[INVERSE_MASS] > 0.0:
         event[LED] += work_of_hold(disc, engine.surface, state, px, py, turn)
     else:
         event[GOT] -= px * state[VX] + py * state[VY] + turn * state[SPIN]
@@ -340,8 +340,8 @@ def note_impacts(engine: Engine, t: float, count: int, room: Room) -> None:
 def cross(engine: Engine, i: int, t: float, k: int, room: Room) -> None:
     """The rim of a disc comes over a border or a patch of the floor, or leaves it."""
     number, x, y = int(engine.obstacles[k, A]), room.states[i, X], room.states[i, Y]
-    enters = int(engine.discs[i, LIES + number]) != ASTRIDE
-    how = ASTRIDE
+    enters = int(engine.discs[i, LIES + number]) != OVERLAPS
+    how = OVERLAPS
     if not enters:
         first, last = floor_map_span(engine.regions, engine.discs, i)
         away = off_border(engine.regions.floor_map[first:last], number, x, y)

@@ -20,10 +20,9 @@ from puck_tables.scene.forces import per_change, per_speed
 from puck_tables.scene.friction import SPIN, VX, VY, friction_force, size
 from puck_tables.scene.ingredients import DryFriction
 from puck_tables.world.engine_state import Engine
-from puck_tables.world.layout import DECEL, DRAG, LIGHTNESS, RADIUS, REGION
+from puck_tables.world.layout import DECEL, DRAG, INVERSE_MASS, RADIUS, REGION
 from puck_tables.world.paths import DURATION, START, jerk_on, on_piece, piece_at
 from puck_tables.world.segment import (
-    CARRIED,
     DAMPED,
     DRIFT_X,
     DRIFT_Y,
@@ -31,6 +30,7 @@ from puck_tables.world.segment import (
     LAST_PIECE,
     LOOKED_UP,
     PATH,
+    RIDING,
     UNTIL,
 )
 
@@ -47,7 +47,7 @@ def _knows(
     """Acceleration of a disc now, the most by which it changes per second, and for how long."""
     kind, segment, disc = engine.kinds[i], engine.segments[i], engine.discs[i]
     vx, vy = state[VX] - segment[DRIFT_X], state[VY] - segment[DRIFT_Y]
-    if kind == CARRIED:
+    if kind == RIDING:
         turning = segment[2]
         speed = turning * math.hypot(vx, vy)
         return -turning * vy, turning * vx, abs(turning * speed), math.inf
@@ -67,10 +67,10 @@ def _knows(
         return 0.0, 0.0, 0.0, math.inf
     regions, row = engine.regions, int(disc[REGION])
     friction = DryFriction(
-        regions.load[row], regions.delta[row], regions.cuts[row], regions.by_speed
+        regions.load[row], regions.delta[row], regions.limits[row], regions.by_speed
     )
     fx, fy, _, _ = friction_force(friction, disc[RADIUS], vx, vy, state[SPIN])
-    decel, light = disc[DECEL], disc[LIGHTNESS]
+    decel, light = disc[DECEL], disc[INVERSE_MASS]
     jerk = _JERK * decel * decel * math.hypot(vx, vy) / slip / slip
     return light * fx, light * fy, jerk, _HALF * slip / decel
 

@@ -9,7 +9,7 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.world.contact_row import ACTS, NX, NY, approach
-from puck_tables.world.contact_search import QUIET
+from puck_tables.world.contact_search import SLOWEST
 from puck_tables.world.engine_state import GOT, N_CONTACTS, N_EVENTS, PLACED, REMOVED, Engine
 from puck_tables.world.floor_under import law_goes_to, lay_down, moves_along, slips
 from puck_tables.world.impact import as_forces
@@ -19,8 +19,8 @@ from puck_tables.world.layout import (
     DECEL,
     EDGE,
     HOLD,
+    INVERSE_MASS,
     KIND,
-    LIGHTNESS,
     OVERHANG,
     POCKET,
     PULL_X,
@@ -35,10 +35,10 @@ from puck_tables.world.layout import (
 from puck_tables.world.multipliers import stop_slips
 from puck_tables.world.segment import GONE, STILL
 from puck_tables.world.segment_starts import (
-    CONCERNED,
-    GIVEN,
-    NOT_CONCERNED,
+    BY_HAND,
+    CURRENT,
     SENT,
+    STALE,
     Room,
     drive_on,
     hang_over,
@@ -71,7 +71,7 @@ _ROUNDS = 8  # of contacts that approach as others are stopped, at most
 @inlined
 def _moves(engine: Engine, room: Room, i: int) -> bool:
     """Whether it is a disc that gives way: the floor holds none that is at rest."""
-    if i < 0 or engine.discs[i, LIGHTNESS] == 0.0:
+    if i < 0 or engine.discs[i, INVERSE_MASS] == 0.0:
         return False
     disc = engine.discs[i]
     steep = engine.surface.static * disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
@@ -99,7 +99,7 @@ def quieten(engine: Engine, count: int, t: float, room: Room) -> None:
             i, j, row = contacts[n, 0], contacts[n, 1], rows[n]
             un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
             least = _ROUNDED * (_speed(room, i) + _speed(room, j))
-            if row[ACTS] > 0.0 or not least < un <= QUIET * engine.scale[0]:
+            if row[ACTS] > 0.0 or not least < un <= SLOWEST * engine.scale[0]:
                 continue
             if _moves(engine, room, i) or _moves(engine, room, j):
                 row[ACTS], more = 1.0, True
@@ -112,7 +112,7 @@ def quieten(engine: Engine, count: int, t: float, room: Room) -> None:
                 if rows[n, ACTS] == 0.0 or i < 0:
                     continue
                 if _moves(engine, room, i):
-                    room.marks[i] = CONCERNED
+                    room.marks[i] = STALE
                 else:
                     buffer.inverse[i, 0] = buffer.inverse[i, 1] = 0.0
         modes = buffer.modes[0, :acting]
@@ -128,7 +128,7 @@ def take_off_all(engine: Engine, t: float, room: Room) -> int:
     """
     for j in range(engine.discs.shape[0]):
         driven = engine.drives[j, 0] < engine.drives[j, 1]
-        if room.marks[j] != CONCERNED or engine.kinds[j] == GONE or driven:
+        if room.marks[j] != STALE or engine.kinds[j] == GONE or driven:
             continue
         if is_integrated(engine, j, room.states[j]):
             if lacks_pieces(engine):
@@ -152,16 +152,14 @@ def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
     quieten(engine, count, t, room)
     pushes = press_somewhere(engine, count, t, room)
     for j in range(engine.discs.shape[0]):
-        pushes = pushes or (
-            room.marks[j] == CONCERNED and sets_off_too_fast(engine, j, room.states[j])
-        )
+        pushes = pushes or (room.marks[j] == STALE and sets_off_too_fast(engine, j, room.states[j]))
     return PUSHING if pushes else take_off_all(engine, t, room)
 
 
 @inlined
 def _depth_in(obstacle: FloatArray, disc: FloatArray, x: float, y: float) -> float:
     """How deep a disc would lie in what stands, or in a hole, m; at most 0: not at all."""
-    shape, driven = int(obstacle[KIND]), disc[LIGHTNESS] == 0.0
+    shape, driven = int(obstacle[KIND]), disc[INVERSE_MASS] == 0.0
     if shape >= OVERHANG or (driven and shape in (POCKET, EDGE)):
         return 0.0
     gap, _, _, there = normal_to(obstacle, disc[RADIUS], x, y, 0.0)
@@ -229,7 +227,7 @@ def _put_down(engine: Engine, i: int, what: int, t: float, moved: bool, room: Ro
 def _is_unseen(engine: Engine, i: int, swift: bool, state: FloatArray) -> bool:
     """Whether a state of a disc, if ``swift`` with another velocity, asks for more than a look."""
     disc = engine.discs[i]
-    if disc[HOLD] != FREE or disc[LIGHTNESS] == 0.0:
+    if disc[HOLD] != FREE or disc[INVERSE_MASS] == 0.0:
         return True
     if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
         return True
@@ -243,24 +241,24 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
 
     NaN in them stays as it is; nothing is PLACED where it is.  REMOVED: they leave play.
     MISPLACED: nothing was changed, for one would overlap, see :func:`_overlaps`.  UNSEEN: neither,
-    for of those that are marked as GIVEN one is more than a free disc that surely slips no faster
+    for of those that are marked as BY_HAND one is more than a free disc that surely slips no faster
     than anything has yet.
     """
     count, moves = engine.discs.shape[0], False
     for i in range(count):
         room.shares[i] = _KEPT
-        if room.marks[i] == NOT_CONCERNED:
+        if room.marks[i] == CURRENT:
             continue
         locate(engine, i, t, room)
         changed, moved = what != PLACED, engine.kinds[i] == GONE and what != REMOVED
         swift = False
         for column in range(6):
-            given = room.before[i, column]
-            if math.isnan(given) or given == room.states[i, column]:
+            before = room.before[i, column]
+            if math.isnan(before) or before == room.states[i, column]:
                 room.before[i, column] = room.states[i, column]
             else:
                 changed, moved, swift = True, moved or column <= Y, swift or column >= VX
-        if room.marks[i] == GIVEN and changed and _is_unseen(engine, i, swift, room.before[i]):
+        if room.marks[i] == BY_HAND and changed and _is_unseen(engine, i, swift, room.before[i]):
             return UNSEEN
         if moved:
             room.shares[i], moves = _MOVED, True
@@ -283,12 +281,12 @@ def put(engine: Engine, what: int, t: float, room: Room) -> int:
                 _put_down(engine, i, what, t, room.shares[i] == _MOVED, room)
     for i in range(count):  # who has left play touches nobody
         touches = room.shares[i] != _KEPT and engine.kinds[i] != GONE
-        room.marks[i] = CONCERNED if touches else NOT_CONCERNED
+        room.marks[i] = STALE if touches else CURRENT
     contacts = find_touching(engine, t, room)
     if contacts < 0:
         return CROWDED
     for i in range(count):
-        with_them = engine.group[i] > 0 and room.marks[i] != NOT_CONCERNED
-        concerned = room.shares[i] != _KEPT or with_them
-        room.marks[i] = CONCERNED if concerned else NOT_CONCERNED
+        with_them = engine.group[i] > 0 and room.marks[i] != CURRENT
+        is_involved = room.shares[i] != _KEPT or with_them
+        room.marks[i] = STALE if is_involved else CURRENT
     return go_on(engine, t, contacts, room)

@@ -18,7 +18,7 @@ from puck_tables.kernels.compile import kernel
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import stored
-from puck_tables.world.bench import FOUND_COLUMNS, LED, LET_GO, TO_DO, WAITS, Bench, Orders, Slots
+from puck_tables.world.bench import LED, LET_GO, REPORT_COLUMNS, TO_DO, WAITS, Bench, Orders, Slots
 from puck_tables.world.engine_state import REMOVED, Whole
 from puck_tables.world.lasting import LONG, braking_of
 from puck_tables.world.layout import RADIUS
@@ -32,14 +32,14 @@ from puck_tables.world.worlds import Worlds
 # what :func:`play_shipped` says beside how many events there were
 NOTHING_HAPPENS, TOO_FAST, FAILED = -1, -2, -3  # FAILED and less: FAILED − how the engine ended
 # of ``limits``: see :func:`shipped`
-_RADIUS, _STEADY, FASTEST, _SLOWNESS, _PUSHED, _DRAGS = range(6)
+_RADIUS, _STEADY, FASTEST, _LEVER, _PUSHED, _DRAGS = range(6)
 
 
 class Shipped(NamedTuple):
     """A board, where it is played, and what is said of it.
 
     ``limits`` (6,): the least radius, m, the largest steady acceleration, m/s², the fastest slip,
-    m/s, and of how long it may last :func:`puck_tables.world.lasting.braking_of`.  ``found``
+    m/s, and of how long it may last :func:`puck_tables.world.lasting.braking_of`.  ``reports``
     (rows, 12): events; ``states`` (1, pucks, 6), ``moving`` (1, pucks).
     """
 
@@ -47,7 +47,7 @@ class Shipped(NamedTuple):
     store: Slots
     orders: Orders
     limits: FloatArray
-    found: FloatArray
+    reports: FloatArray
     first: Whole
     states: FloatArray
     moving: Whole
@@ -81,9 +81,9 @@ def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
         np.zeros((1, 2)), one.copy(), one.copy(), none.copy(),
     )  # fmt: skip
     limits = np.array([radius, steady, fastest_allowed(engine), *braking_of(engine)])
-    found = np.zeros((2 * len(bench.engine.events), FOUND_COLUMNS))
+    rows = np.zeros((2 * len(bench.engine.events), REPORT_COLUMNS))
     return Shipped(
-        bench, store, orders, limits, found, none.copy(), np.zeros((1, count, 6)),
+        bench, store, orders, limits, rows, none.copy(), np.zeros((1, count, 6)),
         np.zeros((1, count), np.int64),
     ), board  # fmt: skip
 
@@ -107,7 +107,7 @@ def play_shipped(ship: Shipped, what: int, until: float) -> int:
     scales, limits = orders.scales[0], ship.limits
     scales[0], scales[1] = store.numbers[0, 0], store.numbers[0, 1]
     if what == LET_GO:
-        slowing = limits[_SLOWNESS] * (scales[0] + limits[_PUSHED])
+        slowing = limits[_LEVER] * (scales[0] + limits[_PUSHED])
         orders.longest[0] = LONG * max(slowing, scales[0] / scales[1], limits[_DRAGS])
     elif what != REMOVED:
         i, row = orders.discs[0], orders.rows[0, 0]
@@ -125,7 +125,7 @@ def play_shipped(ship: Shipped, what: int, until: float) -> int:
             rate = limits[_STEADY] if limits[_STEADY] > 0.0 else slip * slip / limits[_RADIUS]
             scales[0], scales[1] = slip, max(scales[1], rate)
     orders.until[0], orders.how[0] = until, TO_DO
-    _, used = stored.play(what, orders, store, bench, 0, 1, ship.found)
+    _, used = stored.play(what, orders, store, bench, 0, 1, ship.reports)
     if orders.how[0] == WAITS:
         return NOTHING_HAPPENS
     return used if orders.how[0] == REACHED else FAILED - orders.how[0]

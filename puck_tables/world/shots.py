@@ -21,7 +21,7 @@ from puck_tables.scene.map_of_floor import MANY
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stops import stop_on_base
 from puck_tables.world.agreement import frictions_under, is_integrated, segment_error
-from puck_tables.world.bulk import FATE, LENGTH, PASSES, PRINT, follow_all, trace
+from puck_tables.world.bulk import LENGTH, OUTCOME, PASSES, PRINT, follow_all, trace
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floors import may_be_mixed
 from puck_tables.world.named_pucks import pucks_of, start_of
@@ -35,7 +35,7 @@ _WIDER = 3.0  # by how much the headings towards a disc are more than it takes, 
 _CLOSEST = 1e-7  # rad: closer headings are not parted
 _SHARES = (0.02, 0.1, 0.5)  # of the time that the striker may slide: then courses are looked at
 _STEP = 1e-7  # of a difference: rad, or of the speed
-NO_COURSE = -1  # the print of a run without an end
+NO_SEQUENCE = -1  # the print of a run without an end
 
 
 class Effort(NamedTuple):
@@ -113,8 +113,8 @@ def _gaps(sample: TriedLaunches, most: int) -> Whole:
     lengths = np.minimum(landings.lengths, landings.lengths[after])
     changes = (landings.prints != landings.prints[after]) & (lengths <= most) & (wide > _CLOSEST)
     changes &= first
-    found = np.flatnonzero(changes)
-    return found[np.lexsort((-wide[found], lengths[found]))]
+    places = np.flatnonzero(changes)
+    return places[np.lexsort((-wide[places], lengths[places]))]
 
 
 def _next(sample: TriedLaunches) -> Whole:
@@ -147,7 +147,7 @@ def _with_more(shots: Shots, sample: TriedLaunches, gaps: Whole) -> TriedLaunche
 
 def good(landings: Landings, most: int, wanted: bool) -> FloatArray:
     """Which landings count: few enough impacts, by the way asked for, with an end."""
-    fine = (landings.prints != NO_COURSE) & (landings.lengths <= most)
+    fine = (landings.prints != NO_SEQUENCE) & (landings.lengths <= most)
     return fine & (landings.passes == 1) if wanted else fine
 
 
@@ -158,14 +158,14 @@ class Landings(NamedTuple):
     y: FloatArray
     prints: Whole
     lengths: Whole
-    fates: Whole
+    outcomes: Whole
     passes: Whole
 
     def at(self, which: npt.NDArray[np.int64] | npt.NDArray[np.bool_]) -> Landings:
         """Some of them."""
         return Landings(
             self.x[which], self.y[which], self.prints[which], self.lengths[which],
-            self.fates[which], self.passes[which],
+            self.outcomes[which], self.passes[which],
         )  # fmt: skip
 
     def before(self, more: Landings) -> Landings:
@@ -233,9 +233,9 @@ class Shots:
             self._alone(starts[run], ends.courses[run], ends.states[run], ends.how, int(run))
         moving = (ends.states[:, self._watch[0], 3:6] != 0.0).any(axis=1)
         courses = ends.courses
-        courses[(ends.how != REACHED) | (moving & (courses[:, FATE] == 0)), PRINT] = NO_COURSE
+        courses[(ends.how != REACHED) | (moving & (courses[:, OUTCOME] == 0)), PRINT] = NO_SEQUENCE
         return Landings(
-            x, y, *(courses[:, column] for column in (PRINT, LENGTH, FATE, PASSES))
+            x, y, *(courses[:, column] for column in (PRINT, LENGTH, OUTCOME, PASSES))
         )  # fmt: skip
 
     def _slid(self, starts: FloatArray) -> Landings:
@@ -244,11 +244,11 @@ class Shots:
         turn = cmath.rect(1.0, puck.launch.orientation)
         along = (starts[:, 0] + 1j * starts[:, 1]) / turn
         velocities = np.stack([along.real, along.imag], axis=1)
-        found = stop_on_base(puck, velocities, starts[:, 2], segment_error(self.scene), 1)
-        x, y = found.stop_position.T
+        stops = stop_on_base(puck, velocities, starts[:, 2], segment_error(self.scene), 1)
+        x, y = stops.stop_position.T
         place = complex(*start_of(puck)) + (x + 1j * y) * turn
         none = np.zeros(len(starts), np.int64)
-        prints = np.where(found.status == 0, none, NO_COURSE)
+        prints = np.where(stops.status == 0, none, NO_SEQUENCE)
         return Landings(place.real, place.imag, prints, none, none, none)
 
     def board(self, start: FloatArray) -> SceneSpec:

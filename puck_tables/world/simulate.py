@@ -38,7 +38,7 @@ from puck_tables.world.agreement import segment_error, steps_for
 from puck_tables.world.floor_under import moves_along
 from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import at_rest_below
-from puck_tables.world.layout import HOLD, LIGHTNESS, NORMAL, TURNABILITY
+from puck_tables.world.layout import HOLD, INVERSE_INERTIA, INVERSE_MASS, NORMAL
 from puck_tables.world.ledger import energies_of, energy_scale
 from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.plan import plan_of
@@ -118,13 +118,13 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     cosine, sine = scale * math.cos(share), scale * math.sin(share)
     turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
     launches[:, g.LAUNCH_VX :] = launches[:, g.LAUNCH_VX :] @ turned.T
-    free = (engine.discs[:, LIGHTNESS] > 0.0) & (engine.discs[:, HOLD] == FREE)
+    free = (engine.discs[:, INVERSE_MASS] > 0.0) & (engine.discs[:, HOLD] == FREE)
     floor = velocities_under(engine, states)[free]
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
     engine.scale[2] *= coarser
     engine.discs[:, NORMAL] *= 1.0 + friction
     # torques to the other side, by twice as much: all alike hardly change where rebounds lead
-    engine.discs[:, TURNABILITY] *= 1.0 - 3.0 * friction
+    engine.discs[:, INVERSE_INERTIA] *= 1.0 - 3.0 * friction
     regions = engine.regions._replace(load=engine.regions.load * (1.0 + friction))
     return start._replace(engine=engine._replace(launches=launches, regions=regions), states=states)
 
@@ -189,14 +189,14 @@ def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:
         moving = bool(world.moving.any())
         end_time = world.time if moving else float(ends_of_motion.max())
         along = moving and moves_along(world._engine.surface)
-        carried = along and bool((ends_of_motion < math.inf).all())
-        if carried and not world.state()[:, VX:].any():  # other belts rub it
-            moving = carried = False
-        end = ENDS[CARRIED_AWAY if carried else TIME_UP if moving else AT_REST]
+        rides = along and bool((ends_of_motion < math.inf).all())
+        if rides and not world.state()[:, VX:].any():  # other belts rub it
+            moving = rides = False
+        end = ENDS[CARRIED_AWAY if rides else TIME_UP if moving else AT_REST]
     else:
         end_time, goes_round = world.come_to_rest()
-        carried = bool(world.moving[world.in_play].any())
-        end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if carried else AT_REST]
+        rides = bool(world.moving[world.in_play].any())
+        end = ENDS[CARRIED_ROUND if goes_round else CARRIED_AWAY if rides else AT_REST]
     if len(world.names) == 1 and not world.in_play[0]:
         return _LEFT[world.events_since(0.0)[-1].what], float(world.motion_ends[0])
     return end, end_time
@@ -232,8 +232,8 @@ def columns_of(world: World, moments: FloatArray, end_time: float) -> dict[str, 
         own = world._order
         forces = reactions(world._engine, times, states[:, own], in_play[:, own])[:, discs]
         columns |= {"lambda_1": forces[..., 0], "lambda_2": forces[..., 1]}
-    found = {name: values[back] for name, values in columns.items()}
-    return {"time": np.append(moments, end_time), **found}
+    ordered = {name: values[back] for name, values in columns.items()}
+    return {"time": np.append(moments, end_time), **ordered}
 
 
 def _number(row: Any) -> Any:

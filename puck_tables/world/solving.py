@@ -41,8 +41,8 @@ def stops_at(
     """
     place = np.array(target)
     inside = _in_cells(sample, fine, place)
-    beside = _clear_of(shots, sample, fine, place, low, high)
-    starts = np.vstack([inside, beside])
+    others = _clear_of(shots, sample, fine, place, low, high)
+    starts = np.vstack([inside, others])
     starts[:, 1] = np.clip(starts[:, 1], low, high)
     landings = shots.land(starts)
     return _merged(_newton(shots, starts, landings, place, close, low, high), high - low)
@@ -74,12 +74,12 @@ def _in_cells(sample: TriedLaunches, fine: Which, place: FloatArray) -> FloatArr
     slopes = np.empty((len(corners), 2, 2))
     slopes[:, :, 0] = 0.5 * (ends[:, 1] + ends[:, 3] - ends[:, 0] - ends[:, 2])
     slopes[:, :, 1] = 0.5 * (ends[:, 2] + ends[:, 3] - ends[:, 0] - ends[:, 1])
-    ways, known = _solved(slopes, place - ends.mean(axis=1))
-    near = known & (np.abs(ways) <= _INSIDE).all(axis=1)
-    ways = np.clip(ways[near], -0.5, 0.5) + 0.5
+    steps, known = _solved(slopes, place - ends.mean(axis=1))
+    near = known & (np.abs(steps) <= _INSIDE).all(axis=1)
+    steps = np.clip(steps[near], -0.5, 0.5) + 0.5
     return np.stack(
-        [launches[near, 0, 0] + ways[:, 0] * wide[near],
-         launches[near, 0, 1] + ways[:, 1] * high[near]], axis=1,
+        [launches[near, 0, 0] + steps[:, 0] * wide[near],
+         launches[near, 0, 1] + steps[:, 1] * high[near]], axis=1,
     )  # fmt: skip
 
 
@@ -97,16 +97,16 @@ def _clear_of(
     around[1:] &= level
     around[:-1] &= level
     lonely[grid[around]] = False
-    found = np.flatnonzero(lonely & fine)
-    gaps = np.hypot(landings.x[found] - place[0], landings.y[found] - place[1])
-    found = found[np.argsort(gaps, kind="stable")[:_MOST_STARTS]]
-    if not len(found):
+    places = np.flatnonzero(lonely & fine)
+    gaps = np.hypot(landings.x[places] - place[0], landings.y[places] - place[1])
+    places = places[np.argsort(gaps, kind="stable")[:_MOST_STARTS]]
+    if not len(places):
         return np.empty((0, 2))
-    launches, ends = sample.launches[found], landings.at(found)
+    launches, ends = sample.launches[places], landings.at(places)
     slopes = _slopes(shots, launches, ends, low, high)
-    ways, known = _solved(slopes, place - np.stack([ends.x, ends.y], axis=1))
+    corrections, known = _solved(slopes, place - np.stack([ends.x, ends.y], axis=1))
     steps = np.array([_NEAR * np.diff(common).max(initial=0.0), _NEAR * (high - low) / len(grid)])
-    near = known & (np.abs(ways) <= steps).all(axis=1)
+    near = known & (np.abs(corrections) <= steps).all(axis=1)
     return launches[near]
 
 
@@ -117,11 +117,11 @@ def _solved(slopes: FloatArray, wanted: FloatArray) -> tuple[FloatArray, Which]:
     known = np.abs(determinant) > 1e-12 * size[:, 0] * size[:, 1]
     known &= np.isfinite(slopes).all(axis=(1, 2))
     by = np.where(known, determinant, 1.0)
-    ways = np.stack(
+    steps = np.stack(
         [slopes[:, 1, 1] * wanted[:, 0] - slopes[:, 0, 1] * wanted[:, 1],
          slopes[:, 0, 0] * wanted[:, 1] - slopes[:, 1, 0] * wanted[:, 0]], axis=1,
     ) / by[:, None]  # fmt: skip
-    return ways, known
+    return steps, known
 
 
 def _slopes(
@@ -157,24 +157,24 @@ def _newton(
             break
         here = landings.at(now)
         slopes = _slopes(shots, launches[now], here, low, high)
-        ways, known = _solved(slopes, place - np.stack([here.x, here.y], axis=1))
-        room = np.where(ways[:, 1] > 0.0, high - launches[now, 1], launches[now, 1] - low)
-        over = np.abs(ways[:, 1]) > np.maximum(room, 0.0)
-        shares = np.where(over, 0.9 * room / np.maximum(np.abs(ways[:, 1]), 1e-300), 1.0)
-        shares = np.minimum(shares, 0.3 / np.maximum(np.abs(ways[:, 0]), 1e-300))
+        steps, known = _solved(slopes, place - np.stack([here.x, here.y], axis=1))
+        room = np.where(steps[:, 1] > 0.0, high - launches[now, 1], launches[now, 1] - low)
+        over = np.abs(steps[:, 1]) > np.maximum(room, 0.0)
+        shares = np.where(over, 0.9 * room / np.maximum(np.abs(steps[:, 1]), 1e-300), 1.0)
+        shares = np.minimum(shares, 0.3 / np.maximum(np.abs(steps[:, 0]), 1e-300))
         waiting = known.copy()
         for _ in range(_HALVINGS):
             some = np.flatnonzero(waiting)
             if not len(some):
                 break
-            tried = launches[now[some]] + shares[some, None] * ways[some]
-            found = shots.land(tried)
-            gaps = np.hypot(found.x - place[0], found.y - place[1])
-            better = found.prints == landings.prints[now[some]]
+            tried = launches[now[some]] + shares[some, None] * steps[some]
+            ends = shots.land(tried)
+            gaps = np.hypot(ends.x - place[0], ends.y - place[1])
+            better = ends.prints == landings.prints[now[some]]
             better &= gaps <= (1.0 - 0.1 * shares[some]) * misses[now[some]]
             done = now[some[better]]
             launches[done], misses[done] = tried[better], gaps[better]
-            for column, values in zip(landings, found, strict=True):
+            for column, values in zip(landings, ends, strict=True):
                 column[done] = values[better]
             waiting[some[better]] = False
             shares[some] *= 0.5

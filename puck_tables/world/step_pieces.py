@@ -17,7 +17,7 @@ from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.equations import (
     DRY,
     FIRST,
-    GIVEN,
+    FORCE_WORK,
     ROW,
     SIZE,
     SUPPORT,
@@ -30,7 +30,7 @@ from puck_tables.scene.ingredients import FREE, Phase, floor_velocity, surface_n
 from puck_tables.scene.radau import RADAU_ROWS
 from puck_tables.scene.steps import SHARES, STAGES, accelerations, come_by, rate_at, step
 from puck_tables.world import step_ledger
-from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORKS, Engine
+from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORK_ROWS, Engine
 from puck_tables.world.paths import DURATION, on_piece
 from puck_tables.world.paths import FIRST as PLACES
 from puck_tables.world.paths import START as BEGINS
@@ -68,8 +68,8 @@ class LoneBuffer(NamedTuple):
 # rows of a buffer, in the order of its arrays
 _SINGLE = RADAU_ROWS + 1
 _STATES = _SINGLE + 5
-_ENDS, _BOOKS = _STATES + 3, _STATES + 6
-BUFFER_ROWS = _BOOKS + 4
+_ENDS, _LEDGERS = _STATES + 3, _STATES + 6
+BUFFER_ROWS = _LEDGERS + 4
 BEGUN, ENDED, HALF = cast(int, np.int64(0)), cast(int, np.int64(1)), cast(int, np.int64(2))
 
 
@@ -79,7 +79,7 @@ def buffer_on(rows: FloatArray) -> LoneBuffer:
     return LoneBuffer(
         rows[:RADAU_ROWS], rows[RADAU_ROWS:_SINGLE], rows[_SINGLE], rows[_SINGLE + 1],
         rows[_SINGLE + 2], rows[_SINGLE + 3], rows[_SINGLE + 4], rows[_STATES:_ENDS],
-        rows[_ENDS:_BOOKS], rows[_BOOKS:BUFFER_ROWS],
+        rows[_ENDS:_LEDGERS], rows[_LEDGERS:BUFFER_ROWS],
     )  # fmt: skip
 
 
@@ -100,12 +100,12 @@ def _write_piece(phase: Phase, begin: float, h: float, row: FloatArray, buffer: 
 @inlined
 def _write_work(engine: Engine, begin: float, h: float, number: int, buffer: LoneBuffer) -> None:
     """What a piece, after so many others, did to the energies."""
-    row = engine.work_rows[engine.counts[N_WORKS] + number]
+    row = engine.work_rows[engine.counts[N_WORK_ROWS] + number]
     before, done, after, half = (
         buffer.ledgers[0], buffer.ledgers[1], buffer.ledgers[2], buffer.ledgers[3],
     )  # fmt: skip
     states, ends = buffer.states, buffer.ends
-    for n in range(GIVEN, SIZE):
+    for n in range(FORCE_WORK, SIZE):
         entry = step_ledger.PULL_WORK
         if n == DRY:
             entry = step_ledger.FLOOR_HEAT
@@ -179,7 +179,7 @@ def _write_parts(
             largest = max(largest, _PLACE * each * gap / scale[n], _RATE * gap / scale[VX + n])
             off -= _ROUNDED * (abs(states[BEGUN, n]) + abs(states[ENDED, n])) / each
             largest = max(largest, off / scale[VX + n])
-        for n in range(GIVEN, SIZE):
+        for n in range(FORCE_WORK, SIZE):
             both, done = ends[BEGUN, n] + ends[ENDED, n], states[ENDED, n] - states[BEGUN, n]
             gap = each * (ends[HALF, n] + 0.25 * both) - 1.5 * done
             largest = max(largest, _WORK * abs(gap) / scale[n])
@@ -200,12 +200,12 @@ def _look_between(phase: Phase, t: float, h: float, piece: FloatArray, buffer: L
         trial[n] = buffer.y[n] + come_by(SHARES // 2, h, stages, n)
     if phase.model.hold.kind != FREE:
         on_piece(piece, t + 0.5 * h, buffer.place)
-        for n in range(GIVEN):
+        for n in range(FORCE_WORK):
             trial[n] = buffer.place[n]
         to_laboratory(surface_now(phase, t + 0.5 * h), trial, -1.0)
         off = math.inf
     rates(phase, t + 0.5 * h, trial, buffer.middle, FIRST)
-    for n in range(GIVEN):
+    for n in range(FORCE_WORK):
         missed = abs(buffer.middle[0, n] - rate_at(SHARES // 2, stages, n))
         past = abs(buffer.y[n] + come_by(SHARES, h, stages, n) - buffer.new[n])
         off = max(off, _BETWEEN * h * missed / buffer.scale[n], past / buffer.scale[n])
@@ -224,11 +224,11 @@ def _missed_halfway(
     middle, largest = buffer.states[HALF], 0.0
     error = step(phase, t, 0.5 * h, buffer.y, buffer.scale, buffer.stages, middle)
     if not error < math.inf:
-        for n in range(GIVEN, SIZE):  # as short as it may be, the step is taken all the same
+        for n in range(FORCE_WORK, SIZE):  # as short as it may be, the step is taken all the same
             middle[n] = 0.5 * (buffer.states[BEGUN, n] + buffer.states[ENDED, n])
         return math.inf
     to_laboratory(surface_now(phase, t + 0.5 * h), middle, 1.0)
-    for n in range(GIVEN):
+    for n in range(FORCE_WORK):
         largest = max(largest, abs(buffer.place[n] - middle[n]) / buffer.scale[n])
     return largest / (COARSER * tol)
 

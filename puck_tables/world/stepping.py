@@ -54,7 +54,7 @@ from puck_tables.world.group_forces import (
     rest_on_floor,
     slip_of,
 )
-from puck_tables.world.layout import LIGHTNESS, RADIUS, TURNABILITY, write_over
+from puck_tables.world.layout import INVERSE_INERTIA, INVERSE_MASS, RADIUS, write_over
 from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.pressing import find_break_away, overborne, turn_directions
@@ -75,9 +75,9 @@ _TURN = 1.5  # and of that in which friction turns it; three times as long steps
 
 @inner
 def watch(buffer: GroupBuffer, modes: IntArray, scales: Scales, end: bool) -> None:
-    """What is watched at the start or end of a step, from sights and pushes."""
+    """What is watched at the start or end of a step, from kinematics and pushes."""
     for c in range(modes.shape[0]):
-        seen, sight = buffer.watched[1 if end else 0, c], buffer.sights[c]
+        seen, sight = buffer.watched[1 if end else 0, c], buffer.kinematics[c]
         for i in range(WATCHES):
             seen[i] = math.inf
         if modes[c] == APART:
@@ -144,7 +144,7 @@ def rates_at(
     contacts, power = modes.shape[0], buffer.powers[stage]
     place_driven(group, members, motions, t, y, buffer)
     act(group, members, motions, y, power, buffer)
-    look(group, members, buffer.pairs[:contacts], y, buffer.sights)
+    look(group, members, buffer.pairs[:contacts], y, buffer.kinematics)
     look_at_ties(group, members, t, y, buffer)
     push_and_move(buffer, modes, members.shape[0])
     for place in range(members.shape[0]):
@@ -197,7 +197,7 @@ def step(
         write_over(buffer.powers[END], buffer.powers[STAGES - 1])
     elif largest < math.inf:
         close_gaps(buffer, modes, new)
-        look(group, members, buffer.pairs[: modes.shape[0]], new, buffer.sights)
+        look(group, members, buffer.pairs[: modes.shape[0]], new, buffer.kinematics)
         look_at_ties(group, members, t + h, new, buffer)
         stop_slips(buffer, modes, new)
         rates_at(group, members, modes, motions, t + h, new, END, scales, buffer)
@@ -220,7 +220,7 @@ def longest_step(group: Group, members: IntArray, motions: IntArray, buffer: Gro
             pull = size(rate[3] - cx, rate[4] - cy, radius * (rate[5] - floor.turn))
             q = slip_of(group, number, y)
             disc = group.discs[number]
-            turns = max(disc[LIGHTNESS], 0.5 * radius * radius * disc[TURNABILITY])
+            turns = max(disc[INVERSE_MASS], 0.5 * radius * radius * disc[INVERSE_INERTIA])
             pull = max(pull / _NEAR, load_on(group, number) * turns / _TURN)
             if longest * pull > q:
                 longest = q / pull

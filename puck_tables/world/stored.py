@@ -15,10 +15,10 @@ from puck_tables.kernels.compile import inlined, inner, kernel, patience
 from puck_tables.scene.friction import VX
 from puck_tables.world.bench import (
     ALL_PUT,
-    FOUND_COLUMNS,
     LACKS_PIECES,
     LED,
     LET_GO,
+    REPORT_COLUMNS,
     TO_DO,
     WAITS,
     Bench,
@@ -39,7 +39,7 @@ from puck_tables.world.engine_state import (
     N_HISTORY,
     N_LAUNCHES,
     N_PIECES,
-    N_WORKS,
+    N_WORK_ROWS,
     PARTNER,
     PATH_ENDS,
     PLACED,
@@ -55,7 +55,7 @@ from puck_tables.world.engine_state import (
 from puck_tables.world.floor_under import law_goes_to
 from puck_tables.world.groups import push_on
 from puck_tables.world.lasting import GOES_ON, ROUND, moves_on, next_target, prescribed_until
-from puck_tables.world.layout import LIGHTNESS, write_over
+from puck_tables.world.layout import INVERSE_MASS, write_over
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.segment import (
@@ -70,7 +70,7 @@ from puck_tables.world.segment import (
     moves_until,
     state_at,
 )  # fmt: skip
-from puck_tables.world.segment_starts import CONCERNED, NOT_CONCERNED, Room, locate
+from puck_tables.world.segment_starts import CURRENT, STALE, Room, locate
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 from puck_tables.world.touching import MOST_BACK
 
@@ -185,7 +185,11 @@ def _put_away(engine: Engine, bench: Bench, store: Slots, slot: int) -> bool:
     for n in range(kept):
         event, row = engine.events[events - kept + n], bench.tail[n]
         row[0], row[1], row[2], row[3] = event[TIME], event[WHAT], event[WHO], event[PARTNER]
-    engine.counts[N_EVENTS], engine.counts[N_HISTORY], engine.counts[N_WORKS] = kept, 2 * count, 0
+    engine.counts[N_EVENTS], engine.counts[N_HISTORY], engine.counts[N_WORK_ROWS] = (
+        kept,
+        2 * count,
+        0,
+    )
     store.due[slot] = _next_due(engine, bench.seen)
     for column in range(bench.numbers.size):
         store.numbers[slot, column] = bench.numbers[column]
@@ -208,7 +212,7 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
     engine.counts[N_AT_ONCE] = 0
     engine.scale[0], engine.scale[1] = orders.scales[k, 0], orders.scales[k, 1]
     for i in range(engine.discs.shape[0]):
-        room.marks[i] = NOT_CONCERNED
+        room.marks[i] = CURRENT
     for m in range(orders.discs.size):
         i, row, changed = orders.discs[m], orders.rows[k, m], False
         locate(engine, i, t, room)
@@ -220,12 +224,12 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
             lead(engine, i, state, FOR_EVER)
             engine.next_time[i], engine.next_partner[i] = t, PATH_ENDS
         elif changed or what != ALL_PUT or engine.kinds[i] != GONE:
-            if changed and what in (PLACED, ALL_PUT) and engine.discs[i, LIGHTNESS] == 0.0:
+            if changed and what in (PLACED, ALL_PUT) and engine.discs[i, INVERSE_MASS] == 0.0:
                 for column in range(6):
                     if row[column] == row[column]:  # not NaN
                         state[column] = row[column]
                 lead(engine, i, state, FOR_EVER)
-            room.marks[i] = CONCERNED
+            room.marks[i] = STALE
             write_over(room.before[i], row)
 
 
@@ -258,12 +262,12 @@ def _played(what: int, k: int, orders: Orders, bench: Bench) -> int:
     if until < math.inf:
         how = _run(engine, until, NOBODY, bench)
     else:
-        target, given = engine.clock[0], prescribed_until(engine)
-        limit = max(target, given) + orders.longest[k]
+        target, prescribed = engine.clock[0], prescribed_until(engine)
+        limit = max(target, prescribed) + orders.longest[k]
         while how == GOES_ON:
             how = _run(engine, target, NOBODY, bench)
             if how == REACHED:
-                how, target = next_target(engine, limit, given, room, bench.ended)
+                how, target = next_target(engine, limit, prescribed, room, bench.ended)
         if how == ROUND:
             how = REACHED
         if how == REACHED and engine.surface.spin == 0.0:  # it was waited for what may come
@@ -282,11 +286,11 @@ def tell(board: int, engine: Engine, first: int, bench: Bench, passed: int, out:
         row[8], row[9], row[10], row[11] = event[SLIDE], event[PUSH], event[RUB], event[LOST]
         used += 1
     for n in range(passed):
-        found, row = bench.found[n], out[used]
+        from_event, row = bench.reports[n], out[used]
         row[0] = board
-        write_over(row[1:], found)
-        row[4] = -1.0 - engine.obstacles.shape[0] - found[LINE]
-        for column in range(1 + COLUMNS, FOUND_COLUMNS):
+        write_over(row[1:], from_event)
+        row[4] = -1.0 - engine.obstacles.shape[0] - from_event[LINE]
+        for column in range(1 + COLUMNS, REPORT_COLUMNS):
             row[column] = 0.0
         used += 1
     return used
@@ -310,16 +314,16 @@ def play(
         if what == LET_GO and store.due[source] > orders.until[k]:
             orders.how[k], orders.after[k] = WAITS, orders.until[k]
             continue
-        if used + engine.events.shape[0] + bench.found.shape[0] > out.shape[0]:
+        if used + engine.events.shape[0] + bench.reports.shape[0] > out.shape[0]:
             return k, used
         _take(store, source, orders.time[k], bench)
         first, passed = engine.counts[N_EVENTS], 0
         how = _played(what, k, orders, bench)
         if how == REACHED and bench.lines.shape[0] > 0:
             passed = find_passings(
-                engine, bench.lines, bench.seen, bench.passed, room.work, room.one, bench.found
+                engine, bench.lines, bench.seen, bench.passed, room.work, room.one, bench.reports
             )
-            if passed > bench.found.shape[0]:
+            if passed > bench.reports.shape[0]:
                 how = FULL
         if how == REACHED:
             rows = tell(orders.boards[k], engine, first, bench, passed, out[used:])

@@ -71,8 +71,8 @@ def target_of(
             itself = "the striker" if through == sent else "the puck that is to end there"
             raise InputError(f"hits = {names[through]}: this is {itself} itself, name another")
     if (target is None) == (pocket is None):
-        given = "both are given" if target is not None else "neither is given"
-        raise InputError(f"target or pocket says where {names[aimed]} is to end: {given}, give one")
+        fault = "both are given" if target is not None else "neither is given"
+        raise InputError(f"target or pocket says where {names[aimed]} is to end: {fault}, give one")
     if pocket is not None:
         number = _pocket(scene, pocket)
         return Target(sent, aimed, through, scene.pockets[number].point, number)
@@ -211,24 +211,24 @@ def out_of_reach(scene: SceneSpec, target: Target, speed: float, spin: float) ->
     pushed = scene.floor != Floor() or any(one.force != Force() for one in pucks)
     if not (at_rest and plain) or pushed:
         return ""
-    way = math.dist(start_of(puck), target.place)
+    distance = math.dist(start_of(puck), target.place)
     if target.pocket >= 0:
-        way = max(way - scene.pockets[target.pocket].radius, 0.0)
-    ways = [(puck, way)]
+        distance = max(distance - scene.pockets[target.pocket].radius, 0.0)
+    legs = [(puck, distance)]
     if target.puck != target.striker:
         gaps = (
             math.dist(start_of(striker), start_of(one)) - striker.radius - one.radius
             for one in others
         )
-        ways.append((striker, max(min(gaps), 0.0)))
-    needed = sum(_LEAST_SHARE * one.decel * one.mass * length for one, length in ways)
+        legs.append((striker, max(min(gaps), 0.0)))
+    needed = sum(_LEAST_SHARE * one.decel * one.mass * length for one, length in legs)
     rim = striker.inertia_radius * spin
-    given = 0.5 * striker.mass * (speed * speed + rim * rim)
-    if given >= needed:
+    energy = 0.5 * striker.mass * (speed * speed + rim * rim)
+    if energy >= needed:
         return ""
     return (
         f"exists: friction takes at least {needed:.4g} J until {puck.name or 'the puck'} is there, "
-        f"and such a launch has at most {given:.4g} J"
+        f"and such a launch has at most {energy:.4g} J"
     )
 
 
@@ -239,12 +239,12 @@ _ROUNDS = 12  # of steps of the search, which are halved where none helps
 class Odds(NamedTuple):
     """Chances of a launch as it was found, and of the best aim beside it.
 
-    ``found`` and ``best``: shares of the same ``count`` scattered runs, with 95 % intervals;
+    ``nominal`` and ``best``: shares of the same ``count`` scattered runs, with 95 % intervals;
     ``velocity`` (vx, vy) m/s and ``spin`` rad/s: what to aim at for the best.  ``failed``: runs
     that could not be followed to their end, which count as misses.
     """
 
-    found: Chance
+    nominal: Chance
     best: Chance
     velocity: tuple[float, float]
     spin: float
@@ -255,14 +255,14 @@ class Odds(NamedTuple):
         aim = f"{math.hypot(vx, vy):.6g} m/s, heading {degrees * math.atan2(vy, vx):.5g} deg"
         lost = f"\n{self.failed} runs could not be followed to their end: misses"
         return (
-            f"scattered so, the launch does it with a chance of {_words(self.found)}\n"
+            f"scattered so, the launch does it with a chance of {_words(self.nominal)}\n"
             f"the best aim found, {aim}, spin {self.spin:.5g} rad/s, with {_words(self.best)}"
             f"{lost if self.failed else ''}"
         )
 
     def summary(self) -> dict[str, Any]:
         """Chances and aim, ready for JSON."""
-        chances = {"found": self.found._asdict(), "best": self.best._asdict()}
+        chances = {"nominal": self.nominal._asdict(), "best": self.best._asdict()}
         return self._asdict() | chances
 
 
@@ -287,11 +287,11 @@ class _Trials:
         boards, runs = self._start.copy(np.zeros(len(draws), int)), np.arange(len(draws))
         velocities = speed[:, None] * _along(centre[0] + heading)
         boards.strike(self._wanted.striker, velocities, centre[2] + spin)
-        hit = np.zeros(len(draws), bool)
+        reached = np.zeros(len(draws), bool)
         while runs.size:
             try:
                 boards.advance(self._until)
-                hit[runs] = self._ends(boards)
+                reached[runs] = self._ends(boards)
                 break
             except PuckError as error:
                 if not error.boards:
@@ -299,7 +299,7 @@ class _Trials:
                 left = np.setdiff1d(np.arange(len(runs)), error.boards)
                 runs, boards = runs[left], boards.copy(left) if left.size else boards
         self.failed = len(draws) - len(runs)
-        return hit
+        return reached
 
     def _ends(self, boards: Worlds) -> npt.NDArray[np.bool_]:
         """On which boards the puck is where it is to be."""
@@ -338,14 +338,14 @@ def odds_of(
     drawn = np.random.default_rng(seed).normal(size=(2, count, 3))
     boards = _Trials(scene, wanted, scatter, near)
     best = _climb(boards, start, scatter * [1.0, start[1], 1.0], drawn[0, :_TRIED])
-    found = boards.hits(start, drawn[1]).sum()
+    reached = boards.hits(start, drawn[1]).sum()
     failed, better = boards.failed, boards.hits(best, drawn[1]).sum()
-    if better > found:
+    if better > reached:
         failed = boards.failed
     else:
-        best, better = start, found
+        best, better = start, reached
     vx, vy = (best[1] * _along(best[:1])[0]).tolist()
-    chances = chance_of(int(found), count), chance_of(int(better), count)
+    chances = chance_of(int(reached), count), chance_of(int(better), count)
     return Odds(*chances, (vx, vy), float(best[2]), failed)
 
 

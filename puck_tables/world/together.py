@@ -21,12 +21,12 @@ from puck_tables.world import engine_state as g
 from puck_tables.world import stored
 from puck_tables.world.bench import (
     ALONE,
-    FOUND_COLUMNS,
     LACKS_PIECES,
     LED,
     LET_GO,
-    PACE,
+    REPORT_COLUMNS,
     ROWS,
+    SCALES,
     TO_DO,
     WAITS,
     Bench,
@@ -39,7 +39,7 @@ from puck_tables.world.by_hand import slips_of
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
-from puck_tables.world.layout import HOLD, LIGHTNESS
+from puck_tables.world.layout import HOLD, INVERSE_MASS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
 from puck_tables.world.segment_starts import room_for
@@ -109,7 +109,7 @@ class Together:
         time = np.zeros(count) if anew else self.time[some]
         target = np.where(self._at[some] == some, some + n, some)
         how, longest = np.full(count, TO_DO), np.zeros(count)
-        scales = self._store.numbers[source, PACE]
+        scales = self._store.numbers[source, SCALES]
         if what != LET_GO and not self._plain:
             how[:] = ALONE
         elif rows is not None and discs is not None:
@@ -121,19 +121,19 @@ class Together:
             some, source, target, time, time + span, np.zeros(0, int) if discs is None else discs,
             np.zeros((0, 0, 6)) if rows is None else rows, scales, longest, np.empty(count), how,
         )  # fmt: skip
-        told = self._play(what, orders)
+        results = self._play(what, orders)
         apart: dict[int, g.Engine] = {}
         failed: dict[int, PuckError] = {}
         for k in np.flatnonzero((how != REACHED) & (how != WAITS)).tolist():
             try:
-                told.append(self._play_alone(orders, k, alone, apart))
+                results.append(self._play_alone(orders, k, alone, apart))
             except PuckError as error:
                 failed[int(some[k])] = error
         if failed:
             raise of_boards(failed)
         self._at[some] = np.where(how == WAITS, source, target)
         self.time = self.time.copy()
-        self.time[some], self._described = orders.after, told
+        self.time[some], self._described = orders.after, results
         if self._apart or apart:
             still = np.setdiff1d(self._at, target)
             self._apart = {slot: one for slot, one in self._apart.items() if slot in still} | apart
@@ -152,15 +152,15 @@ class Together:
             new = np.flatnonzero(fastest > scales[:, 0])
             fastest = fastest[new]
         else:
-            asks = (own[:, LIGHTNESS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
-            new = np.flatnonzero(~(slips_of(own, rows) <= scales[:, :1]).all(axis=1) | asks.any())
+            known = (own[:, INVERSE_MASS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
+            new = np.flatnonzero(~(slips_of(own, rows) <= scales[:, :1]).all(axis=1) | known.any())
             now = self._states(slots[new], time[new])[0][:, self._order]
             states = now.copy()
             states[:, discs] = np.where(np.isnan(rows[new]), states[:, discs], rows[new])
             changed, slips = (states != now)[:, discs], slips_of(own, states[:, discs])
             swift = changed[..., VX:].any(axis=2) & (slips > SURELY * scales[new, :1])
-            unseen = (asks & (changed.any(axis=2) | (what == g.STRUCK)) | swift).any(axis=1)
-            unseen &= (slips > scales[new, :1]).any(axis=1) | asks.any()
+            unseen = (known & (changed.any(axis=2) | (what == g.STRUCK)) | swift).any(axis=1)
+            unseen &= (slips > scales[new, :1]).any(axis=1) | known.any()
             new, states = new[unseen], states[unseen]
             fastest = slips_of(engine.discs, states).max(axis=1, initial=0.0)
         if new.size:
@@ -168,14 +168,14 @@ class Together:
 
     def _play(self, what: int, orders: Orders) -> list[FloatArray]:
         """Play boards together; what happened."""
-        told: list[FloatArray] = []
+        answers: list[FloatArray] = []
 
         def work(start: int, stop: int) -> None:
             bench, out = self._a_bench()
             while start < stop:
                 start, used = stored.play(what, orders, self._store, bench, start, stop, out)
                 if used:
-                    told.append(out[:used].copy())
+                    answers.append(out[:used].copy())
             self._free.append((bench, out))
 
         while (orders.how == TO_DO).any():
@@ -184,7 +184,7 @@ class Together:
             if lacking.any():
                 self._grow()
                 orders.how[lacking] = TO_DO
-        return told
+        return answers
 
     def _on_all_cores(self, work: Callable[[int, int], None], count: int) -> None:
         """Call it for parts of so many boards; many are compiled for at once.
@@ -226,9 +226,9 @@ class Together:
         if world._engine.floors is not self._first._engine.floors:
             apart[int(orders.target[k])] = world._engine
         passed = world._passings.rows
-        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), FOUND_COLUMNS))
+        out = np.empty((int(world._engine.counts[g.N_EVENTS]) + len(passed), REPORT_COLUMNS))
         used = stored.tell(
-            board, world._engine, first, bench._replace(found=passed), len(passed), out
+            board, world._engine, first, bench._replace(reports=passed), len(passed), out
         )
         orders.after[k], orders.how[k] = world.time, REACHED
         self._free.append(mine)
@@ -260,7 +260,7 @@ class Together:
         except IndexError:
             bench = self._bench(self._store.pieces.shape[1])
             rows = _ROWS + 2 * len(bench.engine.events)
-            return bench, np.empty((rows, FOUND_COLUMNS))
+            return bench, np.empty((rows, REPORT_COLUMNS))
 
     def _kinds(self, slots: Whole) -> Whole:
         """Of the segments of all discs of boards, (slots, discs)."""

@@ -21,8 +21,8 @@ from puck_tables.world.floor_under import is_over_belts, outruns_law, over_floor
 from puck_tables.world.layout import (
     DECEL,
     INTEGRATED,
+    INVERSE_MASS,
     KIND,
-    LIGHTNESS,
     NO_CUSHION,
     PULL_X,
     PULL_Y,
@@ -34,7 +34,7 @@ from puck_tables.world.layout import (
     slack_of,
 )
 from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
-from puck_tables.world.segment_starts import CONCERNED, LOOKED_AT, NOT_CONCERNED, Room, locate
+from puck_tables.world.segment_starts import CURRENT, LOOKED_AT, STALE, Room, locate
 
 BLUR = 1e-15  # of the time since the start, at full speed: another
 
@@ -57,14 +57,14 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
     while grown:
         grown = False
         for i in range(discs.shape[0]):
-            if room.marks[i] != CONCERNED:
+            if room.marks[i] != STALE:
                 continue
             patience(1)
             room.marks[i] = LOOKED_AT
             for j in range(discs.shape[0]):  # a group ends its segments together
-                if engine.group[j] == engine.group[i] > 0 and room.marks[j] == NOT_CONCERNED:
+                if engine.group[j] == engine.group[i] > 0 and room.marks[j] == CURRENT:
                     locate(engine, j, t, room)
-                    room.marks[j], grown = CONCERNED, True
+                    room.marks[j], grown = STALE, True
             # moments are rounded, and so are the gaps at them
             far = abs(room.states[i, X]) + abs(room.states[i, Y])
             near = TOUCH * discs[i, RADIUS] + BLUR * t * engine.scale[0] + 2.0 * ROUNDED * far
@@ -90,7 +90,7 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                     dy = segment[PLACE_Y] - room.states[i, Y]
                     if abs(dx) > 1.01 * reach or abs(dy) > 1.01 * reach:
                         continue
-                if room.marks[j] == NOT_CONCERNED:
+                if room.marks[j] == CURRENT:
                     locate(engine, j, t, room)
                 dx = room.states[j, X] - room.states[i, X]
                 dy = room.states[j, Y] - room.states[i, Y]
@@ -101,8 +101,8 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                         return -1
                     room.contacts[count, 0], room.contacts[count, 1] = min(i, j), max(i, j)
                     count += 1
-                if room.marks[j] == NOT_CONCERNED:
-                    room.marks[j], grown = CONCERNED, True
+                if room.marks[j] == CURRENT:
+                    room.marks[j], grown = STALE, True
     for n in range(count):
         prepare_contact(engine, room.contacts[n, 0], room.contacts[n, 1], room.states, room.rows[n])
     return count
@@ -114,7 +114,7 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
 
     If none would, no force acts in any: that is a solution, and accelerations have but one.
     """
-    found = False
+    pressed = False
     for n in range(count):
         i, j, row = room.contacts[n, 0], room.contacts[n, 1], room.rows[n]
         un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
@@ -124,15 +124,15 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
         moves = moves or (j >= 0 and slips(engine.surface, engine.discs[j], room.states[j]))
         least = HARDLY * engine.scale[1] if moves else -HARDLY * engine.scale[1]
         if row[ACTS] > 0.0 and opening(engine, i, j, t, row, room.states) < least:
-            found = True
-    return found
+            pressed = True
+    return pressed
 
 
 @inlined
 def sets_off_too_fast(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
     ux, uy, w = over_floor(engine.surface, engine.discs[i], state)
-    free = engine.discs[i, LIGHTNESS] > 0.0
+    free = engine.discs[i, INVERSE_MASS] > 0.0
     return free and outruns_law(engine.regions, engine.discs[i, RADIUS], ux, uy, w)
 
 
@@ -196,11 +196,11 @@ def dies_out(engine: Engine, i: int, j: int, t: float, row: FloatArray, states: 
         return False
     un, _ = approach(engine, i, j, row[NX], row[NY], states)
     closing = -opening(engine, i, j, t, row, states)
-    way = _slip2(engine, i, states)
+    slip2 = _slip2(engine, i, states)
     if j >= 0:
-        way = max(way, _slip2(engine, j, states))
+        slip2 = max(slip2, _slip2(engine, j, states))
     rounded = _LOW * (abs(states[i, X]) + abs(states[i, Y]))
-    least = _LEAST * engine.scale[2] * way / engine.scale[1]
+    least = _LEAST * engine.scale[2] * slip2 / engine.scale[1]
     height = max(rounded, _FLAT * engine.discs[i, RADIUS], least)
     if closing <= 0.0 or un > 0.0 or un * un > 2.0 * closing * height:
         return False

@@ -31,13 +31,13 @@ from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.holds import response
 from puck_tables.world.lasting import refuse_too_fast
-from puck_tables.world.layout import HOLD, LIGHTNESS, RADIUS
+from puck_tables.world.layout import HOLD, INVERSE_MASS, RADIUS
 from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_scales
 from puck_tables.world.running import Running
 from puck_tables.world.segment import GONE
-from puck_tables.world.segment_starts import CONCERNED, GIVEN, NOT_CONCERNED, room_for
+from puck_tables.world.segment_starts import BY_HAND, CURRENT, STALE, room_for
 
 _ALL = slice(None)
 
@@ -96,7 +96,7 @@ class World(Running):
             If there is no such puck, it is not in play or driven, or a number is not finite.
         """
         i = self._in_play(puck)
-        if self._engine.discs[i, LIGHTNESS] == 0.0:
+        if self._engine.discs[i, INVERSE_MASS] == 0.0:
             raise InputError(f"{self._name(i)} is driven along its path")
         row = row_of(None, None, velocity, spin)
         if impulse is not None:
@@ -274,10 +274,10 @@ class World(Running):
         if velocity is not None and towards is None and speed is None:
             state[VX : VY + 1] = two_of("velocity", velocity, "m/s")
         elif velocity is None and towards is not None and speed is not None:
-            way = two_of("towards", towards, "m") - state[:2]
-            far, fast = math.hypot(*way), positive("speed", speed, "m/s")
+            direction = two_of("towards", towards, "m") - state[:2]
+            far, fast = math.hypot(*direction), positive("speed", speed, "m/s")
             duration = far / fast
-            state[VX : VY + 1] = fast / far * way if far > 0.0 else 0.0
+            state[VX : VY + 1] = fast / far * direction if far > 0.0 else 0.0
         else:
             raise InputError("give a velocity, or towards, where to, with a speed")
         state[SPIN] = turn
@@ -315,7 +315,7 @@ class World(Running):
         [0.75, 1.0]
         """
         i = self._in_play(puck)
-        if self._engine.discs[i, LIGHTNESS] == 0.0:
+        if self._engine.discs[i, INVERSE_MASS] == 0.0:
             raise InputError(f"{self._name(i)} is driven: no force moves it")
         push = np.append(two_of("force", force, "N"), real("torque", torque, "N m"))
         until = self.time + positive("duration", duration, "s")
@@ -336,8 +336,8 @@ class World(Running):
         room, by_hand = self._room, what in (g.STRUCK, g.PLACED, g.ADDED)
         with self._or_as_before():
             self._engine.counts[g.N_AT_ONCE] = 0
-            for mark in (GIVEN if by_hand else CONCERNED, CONCERNED):
-                room.marks[:] = NOT_CONCERNED
+            for mark in (BY_HAND if by_hand else STALE, STALE):
+                room.marks[:] = CURRENT
                 room.marks[discs] = mark
                 room.before[discs] = rows
                 if self._advance(self.time, what):
@@ -348,7 +348,7 @@ class World(Running):
     def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""
         engine, own = self._engine, self._engine.discs[discs]
-        held, led = own[:, HOLD] != FREE, (own[:, LIGHTNESS] == 0.0) & (what != g.ADDED)
+        held, led = own[:, HOLD] != FREE, (own[:, INVERSE_MASS] == 0.0) & (what != g.ADDED)
         law = law_goes_to(engine.regions) < math.inf
         sure = not (law or held.any() or led.any() or moves_along(engine.surface))
         if sure and (slips_of(own, rows) <= engine.scale[0]).all():

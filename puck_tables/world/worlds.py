@@ -15,9 +15,9 @@ from puck_tables.scene.pucks_and_posts import called_line
 from puck_tables.scene.run import Event, number_of
 from puck_tables.world import engine_state as g
 from puck_tables.world.agreement import refuse_endless
-from puck_tables.world.bench import ALL_PUT, FOUND_COLUMNS, LED, LET_GO
+from puck_tables.world.bench import ALL_PUT, LED, LET_GO, REPORT_COLUMNS
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.layout import LIGHTNESS
+from puck_tables.world.layout import INVERSE_MASS
 from puck_tables.world.running import span_of
 from puck_tables.world.segment import GONE
 from puck_tables.world.together import Together, of_boards
@@ -100,7 +100,7 @@ class Worlds(Together):
         >>> [worlds.events[name].tolist() for name in ("board", "what", "partner")]
         [[0, 1], ['impact', 'impact'], ['puck 1', 'puck 1']]
         """
-        rows = np.concatenate([np.zeros((0, FOUND_COLUMNS)), *self._described])
+        rows = np.concatenate([np.zeros((0, REPORT_COLUMNS)), *self._described])
         obstacles, lines = self._first._obstacles, self.scene.lines
         late = rows[:, 4] < -len(obstacles)  # a line: sorted in as World does
         order = np.lexsort((-rows[:, 4] * late, rows[:, 3] * late, late, rows[:, 1] * bool(lines),
@@ -109,11 +109,11 @@ class Worlds(Together):
         board, what, who, partner = rows[:, [0, 2, 3, 4]].astype(int).T
         pucks = [self.names[number] for number in self._order]
         things = [called_line(lines, k) for k in range(len(lines))][::-1] + obstacles[::-1]
-        found = {"board": board, "time": rows[:, 1], "what": np.array(g.EVENTS)[what],
+        columns = {"board": board, "time": rows[:, 1], "what": np.array(g.EVENTS)[what],
                  "puck": np.array(pucks)[who]}  # fmt: skip
         partners = np.array(["floor", *things, *pucks])
-        found["partner"] = partners[np.where(what == g.TIPS, 0, partner + len(things) + 1)]
-        return found | dict(zip(Event._fields[4:], rows[:, 5:].T, strict=True))
+        columns["partner"] = partners[np.where(what == g.TIPS, 0, partner + len(things) + 1)]
+        return columns | dict(zip(Event._fields[4:], rows[:, 5:].T, strict=True))
 
     def advance(self, duration: float) -> None:
         """Let time pass on all boards; :attr:`events` has what happened in it.
@@ -161,7 +161,7 @@ class Worlds(Together):
         [0.0, 0.0, 1.0]
         """
         i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
-        if self._first._engine.discs[i, LIGHTNESS] == 0.0:
+        if self._first._engine.discs[i, INVERSE_MASS] == 0.0:
             raise InputError(f"{self.names[self._order[i]]} is driven along its path")
         self._refuse_gone(i, some)
         self._put(g.STRUCK, i, some, self._rows(len(some), None, None, velocity, spin))
@@ -347,15 +347,15 @@ class Worlds(Together):
         if boards is None:
             return np.arange(self._n)
         try:
-            given = np.atleast_1d(np.asarray(boards))
+            numbers = np.atleast_1d(np.asarray(boards))
         except ValueError:  # rows that differ in length
-            given = np.array([math.nan])
-        if given.dtype == bool and given.shape == (self._n,):
-            return np.flatnonzero(given)
-        if given.ndim == 1 and (given.size == 0 or np.issubdtype(given.dtype, np.integer)):
-            some = np.unique(given).astype(int)
-            if (again or len(some) == given.size) and ((some >= 0) & (some < self._n)).all():
-                return given.astype(int)
+            numbers = np.array([math.nan])
+        if numbers.dtype == bool and numbers.shape == (self._n,):
+            return np.flatnonzero(numbers)
+        if numbers.ndim == 1 and (numbers.size == 0 or np.issubdtype(numbers.dtype, np.integer)):
+            some = np.unique(numbers).astype(int)
+            if (again or len(some) == numbers.size) and ((some >= 0) & (some < self._n)).all():
+                return numbers.astype(int)
         once = "" if again else ", each once"
         raise InputError(f"boards must be numbers from 0 to {self._n - 1}{once}, or a mask of "
                          f"{self._n}, got {shown(boards)}")  # fmt: skip
@@ -389,8 +389,8 @@ class Worlds(Together):
 
     def _each(self, name: str, values: Any, unit: str, count: int, *width: int) -> FloatArray:
         """Numbers for each board, or for all the same."""
-        found = finite_array(name, values, unit)
-        if found.shape not in (width, (count, *width)):
+        rows = finite_array(name, values, unit)
+        if rows.shape not in (width, (count, *width)):
             raise InputError(f"{name} must have the shape {width} or {(count, *width)}, in {unit}, "
-                             f"got {found.shape}")  # fmt: skip
-        return found
+                             f"got {rows.shape}")  # fmt: skip
+        return rows

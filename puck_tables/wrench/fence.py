@@ -67,13 +67,13 @@ class OutlinePiece(NamedTuple):
         if math.isinf(self.length):
             normal = (self.begin - finger) / abs(self.begin - finger)
             return self.begin - self.along.real * normal, normal, 0.0
-        way = (finger - self.begin) / self.along
-        return self.begin + way.real * self.along, 1j * self.along, way.real
+        share = (finger - self.begin) / self.along
+        return self.begin + share.real * self.along, 1j * self.along, share.real
 
     def distance(self, finger: complex) -> float:
         """How far it is from a finger."""
-        contact, _, way = self.place(finger)
-        end = self.begin + min(max(way, 0.0), self.length) * self.along
+        contact, _, share = self.place(finger)
+        end = self.begin + min(max(share, 0.0), self.length) * self.along
         return abs(finger - (contact if math.isinf(self.length) else end))
 
 
@@ -181,8 +181,8 @@ class Along(Pushing):
         gaps, along = self._gaps(own, turn)
         touching = np.flatnonzero(gaps <= gaps.min() + _TOUCHES * self.base[REACH])
         first, last = touching[along[touching].argmin()], touching[along[touching].argmax()]
-        way = self.heading / self.normal
-        slope = min(max(way.imag / way.real, -self.friction), self.friction)
+        direction = self.heading / self.normal
+        slope = min(max(direction.imag / direction.real, -self.friction), self.friction)
         acts = _acts(own * turn / self.normal, slope)
         parts = self.base, self.heading, self.friction, self.start, self.points, self.normal
         inside = self.half - _TOUCHES * self.base[REACH]
@@ -209,12 +209,12 @@ class Flush(Along):
     def at(self, t: float, y: FloatArray) -> tuple[FloatArray, int]:
         """In closed form: no turn, and f N along the motion."""
         own, turn = self.own(t, y)
-        way, push = self.heading / self.normal, complex(1.0, self.slope) * self.normal
-        moved, force = way.real * push, push / abs(push)
+        direction, push = self.heading / self.normal, complex(1.0, self.slope) * self.normal
+        moved, force = direction.real * push, push / abs(push)
         place = self.start + t * self.heading
         place += 1j * self.normal * _acts(own * turn / self.normal, self.slope)
-        code = LEFT if way.imag / way.real > self.slope else RIGHT
-        code = STICKS if way.imag / way.real == self.slope else code
+        code = LEFT if direction.imag / direction.real > self.slope else RIGHT
+        code = STICKS if direction.imag / direction.real == self.slope else code
         return np.array([
             moved.real, moved.imag, 0.0, force.real, force.imag, place.real, place.imag,
         ]), FLUSH + code  # fmt: skip
@@ -244,8 +244,8 @@ def laid_on(
             "velocity that leads it to the puck"
         )
     places = points[:, 0] + 1j * points[:, 1]
-    ways = np.roll(places, -1) - places
-    turns = (ways.conjugate() * np.roll(ways, -1)).imag
+    edges = np.roll(places, -1) - places
+    turns = (edges.conjugate() * np.roll(edges, -1)).imag
     if fence.width < math.inf and len(points) > 1 and (points[:, 2].any() or turns.min() < 0.0):
         raise InputError(
             "a fence of a width pushes convex polygons and discs: leave the width of this one out"
@@ -253,10 +253,10 @@ def laid_on(
     away = places * (cmath.rect(1.0, y[2]) / normal)
     start = normal * complex((away.real - points[:, 2]).min(), fence.offset)
     half = 0.5 * fence.width
-    found = Along(base, heading, friction, start, points, normal, half, 0).after(0.0, y)
-    if isinstance(found, str):
+    legs = Along(base, heading, friction, start, points, normal, half, 0).after(0.0, y)
+    if isinstance(legs, str):
         raise InputError(
             "the fence touches with an end, or the puck turns about that at once: push there with "
             "a finger, or give it another offset or width"
         )
-    return found
+    return legs

@@ -79,8 +79,8 @@ class WrenchForm:
         0.5
         """
         rows = self._rows(force, torque)
-        found: FloatArray = (monomials(rows, self.powers) @ self.coefficients) ** (1.0 / self.order)
-        return found
+        values: FloatArray = monomials(rows, self.powers) @ self.coefficients
+        return np.asarray(values ** (1.0 / self.order))
 
     def twist(self, force: npt.ArrayLike, torque: npt.ArrayLike) -> tuple[FloatArray, FloatArray]:
         """The slip that such a push leads to, of any length: the gradient of the form.
@@ -151,10 +151,10 @@ def monomials(rows: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     [4.0, 6.0]
     """
     of = rows[..., None] ** np.arange(powers.max() + 1.0)
-    found: FloatArray = (
+    values: FloatArray = (
         of[..., 0, powers[:, 0]] * of[..., 1, powers[:, 1]] * of[..., 2, powers[:, 2]]
     )
-    return found
+    return values
 
 
 def gradient(
@@ -187,12 +187,12 @@ def _powers(order: int) -> npt.NDArray[np.int64]:
 def _fit(points: FloatArray, roots: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     """Coefficients of the least squares of 1/g − 1."""
     order, parts = int(powers[0].sum()), monomials(points, powers)
-    found = _least_squares(roots[:, None] * parts, roots)
+    coefficients = _least_squares(roots[:, None] * parts, roots)
     for _ in range(_ROUNDS):
-        g = np.maximum(parts @ found, 1e-3) ** (1.0 / order)
+        g = np.maximum(parts @ coefficients, 1e-3) ** (1.0 / order)
         change = parts * (-roots * g ** -(order + 1.0) / order)[:, None]
-        found = found - _least_squares(change, roots * (1.0 / g - 1.0))
-    return found
+        coefficients = coefficients - _least_squares(change, roots * (1.0 / g - 1.0))
+    return coefficients
 
 
 def _least_squares(parts: FloatArray, wanted: FloatArray) -> FloatArray:
@@ -202,11 +202,11 @@ def _least_squares(parts: FloatArray, wanted: FloatArray) -> FloatArray:
 def _square(two: FloatArray, powers: npt.NDArray[np.int64]) -> FloatArray:
     """The square of a form of order 2 as one of order 4."""
     place = {tuple(row): i for i, row in enumerate(powers.tolist())}
-    found = np.zeros(len(powers))
+    coefficients = np.zeros(len(powers))
     for one, a in zip(_powers(2), two, strict=True):
         for other, b in zip(_powers(2), two, strict=True):
-            found[place[tuple((one + other).tolist())]] += a * b
-    return found
+            coefficients[place[tuple((one + other).tolist())]] += a * b
+    return coefficients
 
 
 def _hessians(
@@ -225,8 +225,8 @@ def _judged(
 ) -> WrenchForm:  # fmt: skip
     """A form, and how far it is off."""
     g = (monomials(points, powers) @ coefficients) ** (1.0 / powers[0].sum())
-    way = gradient(points, powers, coefficients)
-    across = np.linalg.norm(np.cross(way, normals), axis=1)
-    turned = np.arctan2(across, np.einsum("ni,ni->n", way, normals))
+    normal = gradient(points, powers, coefficients)
+    across = np.linalg.norm(np.cross(normal, normals), axis=1)
+    turned = np.arctan2(across, np.einsum("ni,ni->n", normal, normals))
     error = float(np.abs(1.0 / g - 1.0).max())
     return WrenchForm(powers, coefficients, unit, length, error, float(turned.max()))

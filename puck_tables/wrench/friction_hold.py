@@ -84,14 +84,14 @@ def wrench(
     rows = np.stack([one.ravel() for one in (vx, vy, turning)]) / size
     slopes = np.empty((size.size, 3, 3)) if jacobian else np.empty((0, 3, 3))
     if puck.shape is None and not (puck.body.law.can_lift and puck.delta <= 1.0):
-        found = of_round(puck.body.law, puck.delta, puck.radius, rows, slopes)
+        rows_out = of_round(puck.body.law, puck.delta, puck.radius, rows, slopes)
     else:
-        found = np.empty((3, size.size))
-        _fill_forces(puck.packed_base, turned.ravel(), rows, found, slopes)
+        rows_out = np.empty((3, size.size))
+        _fill_forces(puck.packed_base, turned.ravel(), rows, rows_out, slopes)
     slopes *= load / size[: len(slopes), None, None]
-    found = load * found + 0.0  # no negative zeros
+    rows_out = load * rows_out + 0.0  # no negative zeros
     return Wrench(
-        found[:2].T.reshape(*shape, 2), found[2].reshape(shape),
+        rows_out[:2].T.reshape(*shape, 2), rows_out[2].reshape(shape),
         slopes.reshape(*shape, 3, 3) if jacobian else None,
     )  # fmt: skip
 
@@ -115,8 +115,8 @@ def of_round(
     """Friction (3, n) over f N of slips (3, n) by the resultants; derivatives (n or 0, 3, 3)."""
     speed, rim = np.hypot(rows[0], rows[1]), radius * rows[2]
     phi, slip = np.arctan2(rim, speed), np.hypot(speed, rim)
-    way = np.where(speed > 0.0, rows[0] + 1j * rows[1], 1.0)
-    way = way / np.abs(way)
+    direction = np.where(speed > 0.0, rows[0] + 1j * rows[1], 1.0)
+    direction = direction / np.abs(direction)
 
     def by(angle: FloatArray) -> FloatArray:
         """Friction along the velocity, across, and its torque over the radius."""
@@ -127,22 +127,22 @@ def of_round(
         return -np.stack([side * along, side * across, turn])
 
     along, across, turn = by(phi)
-    force = way * (along + 1j * across)
+    force = direction * (along + 1j * across)
     if len(slopes):
         begin, end = phi - _STEP, phi + _STEP
         change = (by(end) - by(begin)) / (2.0 * _STEP * slip)
         cosine, sine = speed / slip, rim / slip
         # to the speed, to the velocity across over the speed, to r w
         still = speed < _STILL * slip
-        beside = np.stack([-across, along]) / np.where(still, 1.0, speed)
+        normal = np.stack([-across, along]) / np.where(still, 1.0, speed)
         ahead = -sine * change
-        beside = np.where(still, np.stack([-ahead[1], ahead[0]]), beside)
+        normal = np.where(still, np.stack([-ahead[1], ahead[0]]), normal)
         local = np.zeros((3, 3, speed.size))
         local[:, 0], local[:, 2] = ahead, cosine * change
-        local[0, 1], local[1, 1] = beside
+        local[0, 1], local[1, 1] = normal
         turned = np.zeros_like(local)
-        turned[0, 0] = turned[1, 1] = way.real
-        turned[1, 0], turned[0, 1], turned[2, 2] = way.imag, -way.imag, 1.0
+        turned[0, 0] = turned[1, 1] = direction.real
+        turned[1, 0], turned[0, 1], turned[2, 2] = direction.imag, -direction.imag, 1.0
         slopes[...] = np.einsum("ikn,kln,jln->nij", turned, local, turned)
         slopes[:, 2, :] *= radius
         slopes[:, :, 2] *= radius

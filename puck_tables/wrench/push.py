@@ -216,14 +216,14 @@ def push(
     if span > 0.0:
         legs, last, end = _followed(pushing, begun, span, base.reach, _name(fence))
     path = np.linspace(0.0, last, frames if last > 0.0 else 1)
-    found = [_leg_at(legs, s) for s in path.tolist()]
-    x, y, orientation = np.array([state for state, *_ in found]).T
-    vx, vy, spin, push_x, push_y, place_x, place_y = np.array([rates for _, rates, _ in found]).T
+    legs_at = [_leg_at(legs, s) for s in path.tolist()]
+    x, y, orientation = np.array([state for state, *_ in legs_at]).T
+    vx, vy, spin, push_x, push_y, place_x, place_y = np.array([rates for _, rates, _ in legs_at]).T
     load, start, heading = puck.friction * puck.mass * puck.gravity, pushing.start, pushing.heading
     return Push(
         puck, path / speed, x, y, orientation, speed * vx, speed * vy, speed * spin,
         load * push_x, load * push_y, place_x, place_y,
-        np.array([code for *_, code in found], np.int8), fence,
+        np.array([code for *_, code in legs_at], np.int8), fence,
         start.real + path * heading.real, start.imag + path * heading.imag, end,
     )  # fmt: skip
 
@@ -323,8 +323,8 @@ def _touched(base: Base, at: npt.ArrayLike) -> tuple[complex, OutlinePiece]:
             "the outline of the base: give a place on it, in the axes of the base"
         )
     if not math.isinf(nearest.length):
-        way = nearest.place(point)[2]
-        if min(way, nearest.length - way) < _ON_IT * base.reach:
+        share = nearest.place(point)[2]
+        if min(share, nearest.length - share) < _ON_IT * base.reach:
             raise InputError(
                 f"at ({place[0]:g}, {place[1]:g}) m the finger is at a corner, where the outline "
                 "has no normal: move it along a side"

@@ -111,8 +111,8 @@ class LimitSurface(Result):
         rows = np.stack([*(np.sqrt(1.0 - z * z) * (np.cos(around), np.sin(around))), z], axis=1)
         torque = length * rows[:, 2]
         margin = holds(self.puck, rows[:, :2], torque, 0.0).margin / self.unit_force
-        found = twist(self.puck, -rows[:, :2], -torque, 0.0)
-        slip = np.concatenate([found.velocity, found.spin[:, None]], axis=1)
+        slips = twist(self.puck, -rows[:, :2], -torque, 0.0)
+        slip = np.concatenate([slips.velocity, slips.spin[:, None]], axis=1)
         return margin[:, None] * rows, _normals(self.puck, slip), np.ones(_DIRECTIONS)
 
     @cached_property
@@ -197,13 +197,13 @@ def _friction(puck: PuckSpec, slip: FloatArray, slopes: bool) -> tuple[FloatArra
     if puck.shape is None:
         rows, out = slip.reshape(-1, 3).T, np.empty((slip.size // 3 if slopes else 0, 3, 3))
         force = of_round(puck.body.law, puck.delta, puck.radius, rows, out).T
-        found, change = force.reshape(slip.shape), out.reshape(-1, *slip.shape[1:], 3)
+        on_puck, change = force.reshape(slip.shape), out.reshape(-1, *slip.shape[1:], 3)
     else:
         unit = puck.mass * puck.decel
         whole = wrench(puck, slip[..., :2], slip[..., 2], 0.0, slopes)
-        found = np.concatenate([whole.force, whole.torque[..., None]], axis=-1) / unit
+        on_puck = np.concatenate([whole.force, whole.torque[..., None]], axis=-1) / unit
         change = np.empty(0) if whole.jacobian is None else whole.jacobian / unit
-    return found / scale, change / scale / scale[:, None] if slopes else change
+    return on_puck / scale, change / scale / scale[:, None] if slopes else change
 
 
 def _normals(puck: PuckSpec, velocities: FloatArray) -> FloatArray:

@@ -20,7 +20,6 @@ from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.kernels.closed_form_kernel import _fill
 from puck_tables.kernels.quadratic import fill_resultants
-from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.tradeoff.resultant_methods import fill_bicubic, graded_coefficients
 
 FloatArray = npt.NDArray[np.float64]
@@ -59,18 +58,11 @@ def against_quadrature(values: FloatArray, points: tuple[FloatArray, FloatArray]
     return float(np.abs(values[:, :JUDGED] - np.stack(truth)).max())
 
 
-def run(
-    measure: Any,
-    name: str,
-    function: Callable[[], Any],
-    error: float,
-) -> None:
+def run(measure: Any, name: str, function: Callable[[], Any], error: float) -> None:
     measure(name, function, items=POINTS, unit="point", error=error)
 
 
-def test_table_kernel(
-    measure: Any, table: ResultantTable, points: tuple[FloatArray, FloatArray]
-) -> None:
+def test_table_kernel(measure, table, points):
     out = np.empty((3, POINTS))
     columns, sides = table.columns, np.array(table.axis.sides)
     fill_resultants(columns, sides, *points, out)
@@ -83,9 +75,7 @@ def test_table_kernel(
     )
 
 
-def test_table_bicubic(
-    measure: Any, table: ResultantTable, points: tuple[FloatArray, FloatArray]
-) -> None:
+def test_table_bicubic(measure, table, points):
     out = np.empty((3, POINTS))
     coefficients = graded_coefficients(table)
     fill_bicubic(coefficients, 1.0, *points, out)
@@ -98,9 +88,7 @@ def test_table_bicubic(
     )
 
 
-def test_table_public(
-    measure: Any, table: ResultantTable, points: tuple[FloatArray, FloatArray]
-) -> None:
+def test_table_public(measure, table, points):
     error = against_closed_form(np.stack(table.resultants(*points)), points)
     run(measure, "default table, Table.resultants", lambda: table.resultants(*points), error)
 
@@ -127,9 +115,7 @@ def test_rival_uncompiled(measure: Any, points: tuple[FloatArray, FloatArray]) -
     run(measure, "rival: closed forms in plain NumPy", lambda: uncompiled(*points), error)
 
 
-def test_rival_rect_bivariate_spline(
-    measure: Any, grid: tuple[FloatArray, ...], points: tuple[FloatArray, FloatArray]
-) -> None:
+def test_rival_rect_bivariate_spline(measure, grid, points):
     phi, delta, values = grid
     splines = [RectBivariateSpline(phi, delta, values[..., f]) for f in range(3)]
 
@@ -140,9 +126,7 @@ def test_rival_rect_bivariate_spline(
     run(measure, "rival: RectBivariateSpline, 200 x 33", look_up, error)
 
 
-def test_rival_ndbspline(
-    measure: Any, grid: tuple[FloatArray, ...], points: tuple[FloatArray, FloatArray]
-) -> None:
+def test_rival_ndbspline(measure, grid, points):
     phi, delta, values = grid
     along_phi = make_interp_spline(phi, values, k=3)
     along_delta = make_interp_spline(delta, along_phi.c, k=3, axis=1)

@@ -238,13 +238,7 @@ def test_times_that_do_not_grow_linearly_are_found_out():
         ("paper.ends.approach_exponent", 1.01, ends.claims, {"Cor. 9", "Cor. 11", "Cor. 12"}),
     ],
 )
-def test_wrong_limits_are_found_out(
-    monkeypatch: pytest.MonkeyPatch,
-    target: str,
-    factor: float,
-    group: Callable[[], list[Claim]],
-    places: set[str],
-):
+def test_wrong_limits_are_found_out(monkeypatch, target, factor, group, places):
     from puck_tables.motion import limits
 
     true = getattr(limits, target.rsplit(".", 1)[1])

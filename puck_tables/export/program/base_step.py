@@ -160,7 +160,7 @@ def add_disc(n: int, ux: float, uy: float, w: float, out: Out) -> None:
     turns: float = area * radius * radius * w / length
     across: float = turns * (p[1] - p[2])
     along: float = turns * p[1]
-    bend: float = area * radius * radius * speed / length * (p[2] - 2.0 * p[1])
+    second: float = area * radius * radius * speed / length * (p[2] - 2.0 * p[1])
     ex: float = c * force
     ey: float = s * force
     xx: float = -c * s * (across + along)
@@ -173,8 +173,8 @@ def add_disc(n: int, ux: float, uy: float, w: float, out: Out) -> None:
     out[3] = out[3] + xy + ex * cy
     out[4] = out[4] + yx + ey * cx
     out[5] = out[5] - xx + ey * cy
-    out[6] = out[6] - s * bend + cx * yx - cy * xx + swing * cx
-    out[7] = out[7] + c * bend - cx * xx - cy * xy + swing * cy
+    out[6] = out[6] - s * second + cx * yx - cy * xx + swing * cx
+    out[7] = out[7] + c * second - cx * xx - cy * xy + swing * cy
 
 
 def press(sums: Numbers, out: Out) -> None:
@@ -233,13 +233,13 @@ def wrench(vx: float, vy: float, spin: float, orientation: float, out: Out) -> i
 
 def add_rates(y: Numbers, rates: Numbers, h: float, decel: float, out: Out, to: Out) -> None:
     """The state y + h rates into to[6], and its rates into out[6]; at rest there are none."""
-    found = room(3)
+    load = room(3)
     for n in range(6):
         to[n] = y[n] + h * rates[n]
-    refusal: int = wrench(to[3], to[4], to[5], to[2], found)
+    refusal: int = wrench(to[3], to[4], to[5], to[2], load)
     for n in range(3):
         out[n] = to[3 + n]
-        out[3 + n] = decel * found[n] if refusal == 0 else 0.0
+        out[3 + n] = decel * load[n] if refusal == 0 else 0.0
     out[5] = out[5] / BASE_SQUARE
 
 

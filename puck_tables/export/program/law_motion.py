@@ -46,12 +46,12 @@ SIDES = 4  # pieces of φ between singular lines
 PATCH: Numbers = ()
 PATCH_ROWS: Rows = ()
 PATCH_DEGREE, PATCH_QUANTUM = 1, 1.0
-ORBIT: Numbers = ()
-ORBIT_ROWS: Rows = ()
-ORBIT_CELLS: Rows = ()
-ORBIT_POWERS: Rows = ()
-ORBIT_DEGREE = 1
-ORBIT_QUANTA: Numbers = ()
+MOTION: Numbers = ()
+MOTION_ROWS: Rows = ()
+MOTION_CELLS: Rows = ()
+MOTION_POWERS: Rows = ()
+MOTION_DEGREE = 1
+MOTION_QUANTA: Numbers = ()
 REACH, END = 16.0, 0.5
 RATE_UNITS: Numbers = ()  # in pure sliding, in pure spin, at the limit
 
@@ -104,10 +104,10 @@ SEARCH = 60  # steps of the Illinois rule at most
 
 def limit_motion_at(branch: int, xi: float, s: float, out_row: Out) -> None:
     """C less its limit, on pieces 0 and 2 share exp(z); and the regular part of the heading."""
-    powers: int = ORBIT_POWERS[branch]
+    powers: int = MOTION_POWERS[branch]
     look_up(  # at least one: compilers see that all they read is set
-        ORBIT, ORBIT_ROWS[branch], ORBIT_CELLS[branch], ORBIT_DEGREE, powers if powers > 1 else 1,
-        2, ORBIT_QUANTA[branch], xi, s, out_row,
+        MOTION, MOTION_ROWS[branch], MOTION_CELLS[branch], MOTION_DEGREE,
+        powers if powers > 1 else 1, 2, MOTION_QUANTA[branch], xi, s, out_row,
     )  # fmt: skip
 
 

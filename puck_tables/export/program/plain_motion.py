@@ -16,9 +16,9 @@ from puck_tables.export.program.intrinsics import Numbers, Out, Rows, room
 STOP: Numbers = ()
 STOP_ROWS: Rows = ()
 STOP_DEGREE, STOP_POWERS, STOP_QUANTUM = 1, 1, 1.0
-CURVE: Numbers = ()
-CURVE_ROWS: Rows = ()
-CURVE_DEGREE, CURVE_POWERS, CURVE_QUANTUM = 1, 1, 1.0
+SIMILARITY: Numbers = ()
+SIMILARITY_ROWS: Rows = ()
+SIMILARITY_DEGREE, SIMILARITY_POWERS, SIMILARITY_QUANTUM = 1, 1, 1.0
 INVERSE: Numbers = ()
 INVERSE_ROWS: Rows = ()
 INVERSE_DEGREE, INVERSE_POWERS, INVERSE_QUANTUM = 1, 1, 1.0
@@ -232,9 +232,9 @@ def regular_heading(
 def similarity_at(side: int, share: float, s: float, out_row: Out) -> None:
     """The regular parts of ln N and of the heading."""
     look_up(
-        CURVE, CURVE_ROWS[side] * CURVE_POWERS * 2,
-        CURVE_ROWS[side + 1] - CURVE_ROWS[side] - CURVE_DEGREE, CURVE_DEGREE, CURVE_POWERS, 2,
-        CURVE_QUANTUM, place_of(share), s, out_row,
+        SIMILARITY, SIMILARITY_ROWS[side] * SIMILARITY_POWERS * 2,
+        SIMILARITY_ROWS[side + 1] - SIMILARITY_ROWS[side] - SIMILARITY_DEGREE, SIMILARITY_DEGREE,
+        SIMILARITY_POWERS, 2, SIMILARITY_QUANTUM, place_of(share), s, out_row,
     )  # fmt: skip
 
 

@@ -122,14 +122,14 @@ def _optitrack(path: str | Path, head: bytes) -> Film:
         )
     columns = []
     for n, axis in enumerate(axes):
-        kind, name, told = (row[n] if n < len(row) else "" for row in (kinds, names, what))
+        kind, name, quantity = (row[n] if n < len(row) else "" for row in (kinds, names, what))
         role = axis.lower()
         if role == "frame" or role.startswith("time (") or axis == "Time":
             columns.append(("", Heading("frame" if role == "frame" else "time", "", "s")))
-        elif kind == ("Rigid Body" if solid else "Marker") and told in ("Position", "Rotation"):
+        elif kind == ("Rigid Body" if solid else "Marker") and quantity in ("Position", "Rotation"):
             body, _, mark = (name, "", "") if solid else name.rpartition(":")
-            role = f"q{role}" if told == "Rotation" else role
-            columns.append((body, Heading(role, mark, unit if told == "Position" else "rad")))
+            role = f"q{role}" if quantity == "Rotation" else role
+            columns.append((body, Heading(role, mark, unit if quantity == "Position" else "rad")))
         else:
             columns.append(("", Heading("")))
     return film_below(path, head, at + 1, columns, "export of OptiTrack", "y")

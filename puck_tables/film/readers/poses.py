@@ -204,12 +204,12 @@ def _sleap(path: str | Path, file: Any) -> Film:
     columns = [("", Heading("frame"))]
     numbers = [np.arange(values.shape[3], dtype=np.float64)]
     for n, k in np.ndindex(len(names), len(nodes)):
-        told = [*values[n, :, k], *([] if scores is None else [scores[n, k]])]
+        row = [*values[n, :, k], *([] if scores is None else [scores[n, k]])]
         columns += [
             (names[n], Heading(role, nodes[k]))
-            for role, _ in zip(("x", "y", "likelihood"), told, strict=False)
+            for role, _ in zip(("x", "y", "likelihood"), row, strict=False)
         ]
-        numbers += told
+        numbers += row
     layout = Layout(columns, "SLEAP analysis file", jointed=True, pixels=True, likely=None)
     return film_of_columns(path, layout, dict(enumerate(numbers)), {})
 

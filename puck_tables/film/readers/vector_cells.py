@@ -35,8 +35,8 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
     for row in rows[1:]:
         cells: list[str] = []
         for cell, count in zip(row, counts, strict=False):
-            told = _numbers(cell) if count in _AXES else [cell]
-            cells += told if len(told) == max(count, 1) else [""] * count
+            numbers = _numbers(cell) if count in _AXES else [cell]
+            cells += numbers if len(numbers) == max(count, 1) else [""] * count
         table.append(cells)
     return csv_of(table)
 
