@@ -134,14 +134,11 @@ def test_elementary_integrals(way):
     table = {
         0.0: (1.0, 1 / 4, 0.0, 1 / 4, -1 / 4),
         QUARTER: (
-            8 * root2 / (3 * math.pi),
-            32 * root2 / (45 * math.pi),
-            -8 * root2 / (45 * math.pi),
-            8 * root2 / (9 * math.pi),
-            -8 * root2 / (15 * math.pi),
+            8 * root2 / (3 * math.pi), 32 * root2 / (45 * math.pi), -8 * root2 / (45 * math.pi),
+            8 * root2 / (9 * math.pi), -8 * root2 / (15 * math.pi),
         ),
         HALF: (1.0, 1 / 3, -1 / 3, 2 / 3, 0.0),
-    }
+    }  # fmt: skip
     for phi, entries in table.items():
         np.testing.assert_allclose(np.array(way.integrals(phi)), entries, rtol=0.0, atol=1e-14)
 

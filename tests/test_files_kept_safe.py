@@ -54,14 +54,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         "simulate --v0 1,0 --pressure link.csv -o ./profile.csv",
         "sweep --w0 0:1:3 --pressure profile.csv -o profile.csv",
         "aim --target 1,0 --w0 1 --pressure profile.csv -o profile.csv",
-        "build-tables --speed-law law.csv -o link.h5",
-        "simulate --scene scene.toml -o force.csv",
-        "simulate --scene scene.toml -o hard.csv",
-        "simulate --scene scene.toml -o profile.csv",
+        "build-tables --speed-law law.csv -o link.h5", "simulate --scene scene.toml -o force.csv",
+        "simulate --scene scene.toml -o hard.csv", "simulate --scene scene.toml -o profile.csv",
         "sweep --scene scene.toml --set launch.spin=0:1:3 -o force.csv",
         "sweep --scene scene.toml --set launch.spin=0:1:3 -o link.csv",
     ],
-)
+)  # fmt: skip
 def test_no_output_replaces_what_is_read(arguments: str, folder: Path):
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     ended = invoke(*arguments.split(), "--overwrite")

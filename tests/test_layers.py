@@ -58,25 +58,13 @@ ROOMS = {
 }
 DOORS = {
     "numba": {
-        "kernels.ahead",
-        "kernels.register_blocks",
-        "kernels.compiled",
-        "kernels.kept_code",
-        "kernels.linking",
-        "kernels.on_demand",
-        "kernels.compile",
-        "kernels.quick_compiler",
-        "kernels.records",
-        "kernels.vectors",
+        "kernels.ahead", "kernels.register_blocks", "kernels.compiled", "kernels.kept_code",
+        "kernels.linking", "kernels.on_demand", "kernels.compile", "kernels.quick_compiler",
+        "kernels.records", "kernels.vectors",
     },
     "llvmlite": {
-        "kernels.ahead",
-        "kernels.kept_code",
-        "kernels.linking",
-        "kernels.on_demand",
-        "kernels.records",
-        "kernels.register_blocks",
-        "kernels.vectors",
+        "kernels.ahead", "kernels.kept_code", "kernels.linking", "kernels.on_demand",
+        "kernels.records", "kernels.register_blocks", "kernels.vectors",
     },
     "h5py": {"film.readers.poses", "io.hdf5", "table.file"},
     "xarray": {"io.formats"},
@@ -88,22 +76,15 @@ DOORS = {
     "distributed": {"bulk.cluster"},
     "dask": {"bulk.cluster"},
     "scipy": {
-        "bulk.spreads",
-        "chetaev",
-        "export.compact_tables",
-        "export.law_values",
-        "fitting",
-        "stopping",
-        "table.speed_patch",
-        "tradeoff",
-        "wrench.push",
+        "bulk.spreads", "chetaev", "export.compact_tables", "export.law_values", "fitting",
+        "stopping", "table.speed_patch", "tradeoff", "wrench.push",
     },
     "click": {"cli"},
     "gymnasium": {"gym"},
     "pettingzoo": {"gym.two_players"},
     "jax": {"autodiff.jax"},
     "torch": {"autodiff.torch"},
-}
+}  # fmt: skip
 
 
 # a text that could name a module, or with a dot at its end all in a room

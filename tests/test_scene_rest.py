@@ -21,16 +21,14 @@ def scene(force: float, torque: float, **parts: Any) -> dict[str, Any]:
     """A puck at rest, r = 1 m, f m g = 1 N, under a force along a slanting line and a torque."""
     return {
         "puck": {
-            "radius": 1.0,
-            "mass": 1.0 / (0.2 * G),
-            "height": parts.pop("height", 0.0),
+            "radius": 1.0, "mass": 1.0 / (0.2 * G), "height": parts.pop("height", 0.0),
             "friction": 0.2,
         },
         "floor": {**parts.pop("floor", {})},
         "force": {"constant": [0.8 * force, 0.6 * force], "torque": torque},
         "time": 1.0,
         **parts,
-    }
+    }  # fmt: skip
 
 
 def friction(phi: float, delta: float) -> tuple[float, float, float]:

@@ -198,14 +198,11 @@ def test_many_rows_are_read_block_by_block_as_few_are(tmp_path: Path):
 
 
 BAD = {
-    "": "is empty",
-    "\n\n": "no rows of numbers",
-    "hello\nworld\n": "no table of numbers",
+    "": "is empty", "\n\n": "no rows of numbers", "hello\nworld\n": "no table of numbers",
     "hello,world\na,b\n": "no (table|rows) of numbers",
     "t,x,y\n0,1,2\n.2,3,4\n.1,1,2\n": "time must increase, but frame 3",
     "t,x,y\n0,1,2\n.2,3,4\n.2,1,2\n": "time must increase, but frame 3",
-    "t,x,y\n0,1,2\n": "two frames",
-    "t,x,y\n0,,\n1,,\n": "two frames.*here are 0",
+    "t,x,y\n0,1,2\n": "two frames", "t,x,y\n0,,\n1,,\n": "two frames.*here are 0",
     "t,x,y\n0,a,2\n1,b,3\n": "line 2, column 2: 'a' is no number",
     "t,x,y\n0,1,2\n1,2\n1.1,3,4\n": "line 3: 2 cells where other rows have 3",
     "t,x,y\n0,1,2\n1,2,3,4\n1.1,2,3\n": "line 3: 4 cells where other rows have 3",

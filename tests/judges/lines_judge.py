@@ -34,9 +34,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     heading = rng.uniform(-math.pi, math.pi)
     scene: dict[str, Any] = {
         "puck": {
-            "radius": radius,
-            "mass": mass,
-            "gyration": float(rng.uniform(0.3, 1.5)),
+            "radius": radius, "mass": mass, "gyration": float(rng.uniform(0.3, 1.5)),
             "friction": 0.0,
         },
         "launch": {
@@ -46,7 +44,7 @@ def draw(seed: int, index: int) -> dict[str, Any]:
         "time": span,
         "frames": 1,
         "drive": rows.tolist(),
-    }
+    }  # fmt: skip
     if rng.random() < 0.3:
         scene["force"] = {"constant": (rng.normal(size=2) * mass * speed / span).tolist()}
     room = speed * span * 10.0 ** rng.uniform(-2.0, 0.3)

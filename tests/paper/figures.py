@@ -62,13 +62,11 @@ def paths(delta: float = 1.0) -> Picture:
         f"Paths of the centre: counter-clockwise spin bends them right (Fig. 3; δ = {delta:g})",
         [
             Panel(
-                "x / r",
-                "y / r  (stretched)",
-                lines,
+                "x / r", "y / r  (stretched)", lines,
                 "v in units of √(rJ), ω of √(J/r); type B: launched spin-rich, C: spin-poor",
             )
         ],
-    )
+    )  # fmt: skip
 
 
 def stops_against_spin(delta: float = 1.0) -> Picture:
