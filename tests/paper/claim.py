@@ -18,8 +18,6 @@ class Claim:
     inequality, which must be positive.  ``erratum`` says what is wrong where the paper is known to
     be; such a claim is expected to fail.
 
-    Examples
-    --------
     >>> Claim("Cor. 1", "p_a > 0", "> 0", 1.0, 1.0).verdict
     'ok'
     """
@@ -53,8 +51,6 @@ def equal(
 ) -> Claim:  # fmt: skip
     """The claim that a quantity has a value; ``text`` is how the paper writes it.
 
-    Examples
-    --------
     >>> equal("Prop. 4", "critical delta", 1.0, 1.0 + 2e-16, 1e-12).margin
     2.220446049250313e-16
     """
@@ -72,8 +68,6 @@ def equal(
 def more(where: str, statement: str, bound: float, computed: float) -> Claim:
     """The claim that a quantity, here at its smallest, is greater than a bound.
 
-    Examples
-    --------
     >>> more("Cor. 1", "p_b > 0", 0.0, 0.25).margin
     0.25
     """
@@ -83,8 +77,6 @@ def more(where: str, statement: str, bound: float, computed: float) -> Claim:
 def less(where: str, statement: str, bound: float, computed: float) -> Claim:
     """The claim that a quantity, here at its largest, is less than a bound.
 
-    Examples
-    --------
     >>> less("section 7", "rate at pi/2", 0.0, -0.25).margin
     0.25
     """
@@ -96,8 +88,6 @@ def farthest(values: Iterable[float], target: float) -> float:
 
     NaN, if there is one.
 
-    Examples
-    --------
     >>> farthest([0.9, 1.2], 1.0)
     1.2
     """
@@ -108,8 +98,6 @@ def farthest(values: Iterable[float], target: float) -> float:
 def at_least(where: str, statement: str, bound: float, computed: float, allowed: float) -> Claim:
     """The claim that a quantity, here at its smallest, is not below a bound that it touches.
 
-    Examples
-    --------
     >>> at_least("Prop. 4", "pressure", 0.0, 1e-17, 1e-14).margin
     0.0
     """

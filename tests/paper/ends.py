@@ -26,13 +26,7 @@ THREE = np.array([1.02, 1.0, 0.98])  # next to one of them
 
 
 def claims(run: Simulate = simulate) -> list[Claim]:
-    """All claims of this file, for the program's motions or others put to the test.
-
-    Examples
-    --------
-    >>> all(claim.verdict != "DIFFERS" for claim in claims())
-    True
-    """
+    """All claims of this file, for the program's motions or others put to the test."""
     return [
         *limit_ratios(run),
         *last_speeds(run),
@@ -43,25 +37,13 @@ def claims(run: Simulate = simulate) -> list[Claim]:
 
 
 def friction_at_limit(delta: float) -> tuple[float, Resultants]:
-    """φ₀(δ) and the resultants there.
-
-    Examples
-    --------
-    >>> round(friction_at_limit(0.0)[0], 6)
-    0.992314
-    """
+    """φ₀(δ) and the resultants there."""
     angle = float(limit_angle(delta))
     return angle, by_closed_form(angle, delta)
 
 
 def limit_ratios(run: Simulate) -> list[Claim]:
-    """Result 4, corollary 9: rω/v → ± tan φ₀ at the stop, exponentially in τ (a power of Q).
-
-    Examples
-    --------
-    >>> [claim.verdict for claim in limit_ratios(simulate)]
-    ['ok', 'ok', 'ok', 'ok']
-    """
+    """Result 4, corollary 9: rω/v → ± tan φ₀ at the stop, exponentially in τ (a power of Q)."""
     found = []
     for delta in DELTAS:
         limit = math.tan(friction_at_limit(delta)[0])
@@ -89,11 +71,6 @@ def last_speeds(run: Simulate) -> list[Claim]:
     """Corollary 11: Q → ρ_∥(φ₀) J (t₀ − t); its remainder goes like (t₀ − t)^(1 + κ), κ < 1.
 
     The paper says O((t₀ − t)²); but φ − φ₀ falls only like Q^κ, and Q' depends on φ linearly.
-
-    Examples
-    --------
-    >>> [claim.verdict for claim in last_speeds(simulate)]
-    ['ok', 'erratum', 'ok']
     """
     speeds, powers, kappas = [], [], []
     for delta in DELTAS:
@@ -123,12 +100,6 @@ def radius_slope(run: Trajectory) -> float:
 
     By eq. 6.5, ds = v dt = −Q g(φ) dQ/J with g = cos φ/(cos²φ ρ_∥ + sin²φ ρ_ω): with Q, not t, as
     variable no digits are lost next to the stop, where g is all but constant.
-
-    Examples
-    --------
-    >>> motion = launch(simulate, 5.0, 1.0, shares=[1.02e-8, 1e-8, 0.98e-8])
-    >>> round(radius_slope(motion), 4)  # −Λ(1)
-    -7.1567
     """
     rho = by_closed_form(run.slip_angle, run.puck.delta)
     radius = curvature_radius(rho.perpendicular, run)
@@ -143,11 +114,6 @@ def last_curvature(run: Simulate) -> list[Claim]:
     """Result 8, corollary 12: at the stop R = 0 and dR/ds = −Λ/δ, whatever the launch.
 
     The paper's remainder O(Q) is one like Q^κ, for the same reason as in corollary 11.
-
-    Examples
-    --------
-    >>> [claim.verdict for claim in last_curvature(simulate)]
-    ['ok', 'ok', 'ok', 'ok', 'erratum', 'ok']
     """
     slopes, radii, powers, kappas = [], [], [], []
     for delta in BENDING:
@@ -179,13 +145,7 @@ def last_curvature(run: Simulate) -> list[Claim]:
 
 
 def endless_turning(run: Simulate) -> list[Claim]:
-    """Result 6, corollary 13: the heading turns without end, by a fixed angle per decade of Q.
-
-    Examples
-    --------
-    >>> [claim.holds for claim in endless_turning(simulate)]
-    [True, True]
-    """
+    """Result 6, corollary 13: the heading turns without end, by a fixed angle per decade of Q."""
     smallest, off = math.inf, 0.0
     for delta in BENDING:
         angle, rho = friction_at_limit(delta)
@@ -207,11 +167,6 @@ def far_past(run: Simulate) -> list[Claim]:
 
     With ε = rω/v, linear stability at φ = π/2 and 0 gives ε ~ Q^(1 − ρ_∥/ρ_ω) → ∞ for type B and
     ε ~ Q^(ρ_ω/ρ_∥ − 1) → 0 for type C as Q → ∞.
-
-    Examples
-    --------
-    >>> all(claim.holds for claim in far_past(simulate))
-    True
     """
     shares = np.linspace(1.0, 0.1, 10)
     found: dict[str, list[float]] = {name: [] for name in ("B", "B off", "C", "C off")}

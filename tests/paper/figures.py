@@ -37,8 +37,6 @@ LAUNCHES = ((10.0, 1.0), (10.0, 4.0), (10.0, 10.0), (5.0, 12.0), (5.0, 25.0))
 def limit_angles() -> Picture:
     """Fig. 2: the limit angle φ₀ against δ.
 
-    Examples
-    --------
     >>> limit_angles().panels[0].lines[0].y[[0, -1]].round(6).tolist()
     [0.992314, 0.975465]
     """
@@ -52,8 +50,6 @@ def limit_angles() -> Picture:
 def paths(delta: float = 1.0) -> Picture:
     """Fig. 3: paths of the centre, launched along x.
 
-    Examples
-    --------
     >>> x = paths().panels[0].lines[-1].x  # v = 5, ω = 25: 25 times the path of v = 1, ω = 5
     >>> float((x[-1] / 25.0).round(6))
     2.257241
@@ -78,8 +74,6 @@ def paths(delta: float = 1.0) -> Picture:
 def stops_against_spin(delta: float = 1.0) -> Picture:
     """Fig. 4: where and when a puck with v = (1, 0) stops, against its spin.
 
-    Examples
-    --------
     >>> [round(float(curve.y[20]), 6) for curve in stops_against_spin().panels[0].lines]
     [4.000189, 2.257241, -0.308477]
     """
@@ -101,8 +95,6 @@ def ratio_against_time(
 
     Returns its δ and the curves, the last one the limit ratio.
 
-    Examples
-    --------
     >>> delta, lines = ratio_against_time(0.03, 0.019, 0.2, 0.52)
     >>> round(delta, 6), round(float(lines[-1].y[0]), 6)
     (0.253333, 1.526615)
@@ -126,8 +118,6 @@ def ratio_against_time(
 def steel_puck() -> Picture:
     """Fig. 5: ε(t) of the steel puck, 60 mm by 19 mm; (b) only up to 0.44 s.
 
-    Examples
-    --------
     >>> len(steel_puck().panels)
     2
     """
@@ -149,8 +139,6 @@ def steel_puck() -> Picture:
 def rubber_puck() -> Picture:
     """Fig. 6: ε(t) of the rubber puck, 74 mm by 25 mm.
 
-    Examples
-    --------
     >>> float(rubber_puck().panels[0].lines[-1].x[-1])
     0.38
     """
@@ -164,8 +152,6 @@ def rubber_puck() -> Picture:
 def patch_integrals() -> Picture:
     """Fig. 7: the five integrals.
 
-    Examples
-    --------
     >>> [float(curve.y[0].round(12)) for curve in patch_integrals().panels[0].lines]
     [1.0, 0.25, 0.0, 0.25, -0.25]
     """
@@ -180,8 +166,6 @@ def patch_integrals() -> Picture:
 def family(function: Callable[[float], FloatArray]) -> list[PlotLine]:
     """A function of φ at five heights, light to dark.
 
-    Examples
-    --------
     >>> [curve.label for curve in family(lambda delta: 0.0 * PHI)][:2]
     ['δ = 0', 'δ = 0.25']
     """
@@ -191,8 +175,6 @@ def family(function: Callable[[float], FloatArray]) -> list[PlotLine]:
 def pressure_reserves() -> Picture:
     """Fig. 8: what keeps the pressure positive.
 
-    Examples
-    --------
     >>> [float(curve.y[0]) for curve in pressure_reserves().panels[0].lines]
     [1.0, 0.9375, 0.75, 0.4375, 0.0]
     """
@@ -207,8 +189,6 @@ def pressure_reserves() -> Picture:
 def friction_along_and_spin() -> Picture:
     """Fig. 9: the resultants ρ_∥ and ρ_ω.
 
-    Examples
-    --------
     >>> [float(panel.lines[-1].y[0]) for panel in friction_along_and_spin().panels]
     [1.0, 0.375]
     """
@@ -227,8 +207,6 @@ def friction_along_and_spin() -> Picture:
 def friction_across() -> Picture:
     """Fig. 10: the resultant ρ_⊥.
 
-    Examples
-    --------
     >>> float(friction_across().panels[0].lines[-1].y[0])
     0.25
     """
@@ -242,8 +220,6 @@ def friction_across() -> Picture:
 def phase_portrait(delta: float = 1.0) -> Picture:
     """Fig. 11: how the slip angle moves, and where it rests.
 
-    Examples
-    --------
     >>> phase_portrait().panels[0].lines[3].x.round(6).tolist()  # the attractors
     [-0.975465, 0.975465]
     """

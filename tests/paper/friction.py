@@ -49,13 +49,7 @@ TABLE_6_1: dict[str, tuple[tuple[str, Callable[[FloatArray], FloatArray]], ...]]
 
 
 def claims(friction: Friction = by_closed_form) -> list[Claim]:
-    """All claims of this file, for the program's resultants or others put to the test.
-
-    Examples
-    --------
-    >>> all(claim.verdict != "DIFFERS" for claim in claims())
-    True
-    """
+    """All claims of this file, for the program's resultants or others put to the test."""
     return [
         *table_6_1(friction),
         *signs(friction),
@@ -67,13 +61,7 @@ def claims(friction: Friction = by_closed_form) -> list[Claim]:
 
 
 def table_6_1(friction: Friction) -> list[Claim]:
-    """The nine entries of table 6.1: the value at δ = 1, the largest deviation for δ ≤ 1.
-
-    Examples
-    --------
-    >>> max(claim.margin for claim in table_6_1(by_closed_form)) < 1e-14
-    True
-    """
+    """The nine entries of table 6.1: the value at δ = 1, the largest deviation for δ ≤ 1."""
     found = friction(np.array([phi for _, phi in ANGLES])[:, None], HEIGHTS)
     return [
         Claim(
@@ -86,13 +74,7 @@ def table_6_1(friction: Friction) -> list[Claim]:
 
 
 def signs(friction: Friction) -> list[Claim]:
-    """Corollaries 4 and 5: the resultants are positive, ρ_ω as long as δ < 2.
-
-    Examples
-    --------
-    >>> round(signs(by_closed_form)[-2].computed, 9)  # where rho_omega loses its sign
-    2.0
-    """
+    """Corollaries 4 and 5: the resultants are positive, ρ_ω as long as δ < 2."""
     heights = HEIGHTS[1:]
     rho = friction(PHI[:, None], heights)
     small = friction(PHI, 0.01)
@@ -114,50 +96,26 @@ def signs(friction: Friction) -> list[Claim]:
 
 
 def decline(friction: Friction, delta: npt.ArrayLike = HEIGHTS) -> FloatArray:
-    """−Q'/J = cos²φ ρ_∥ + sin²φ ρ_ω (eq. 6.5) over the grid of φ, shape (φ, δ).
-
-    Examples
-    --------
-    >>> round(float(decline(by_closed_form, [0.0]).min()), 6)
-    0.975611
-    """
+    """−Q'/J = cos²φ ρ_∥ + sin²φ ρ_ω (eq. 6.5) over the grid of φ, shape (φ, δ)."""
     phi = PHI[:, None]
     rho = friction(phi, delta)
     return np.asarray(np.cos(phi) ** 2 * rho.parallel + np.sin(phi) ** 2 * rho.spin)
 
 
 def excess(friction: Friction, phi: npt.ArrayLike, delta: npt.ArrayLike) -> FloatArray:
-    """ρ_∥ − ρ_ω, whose sign drives φ away from 0 and π/2 and to φ₀.
-
-    Examples
-    --------
-    >>> float(excess(by_closed_form, 0.0, 1.0))
-    0.625
-    """
+    """ρ_∥ − ρ_ω, whose sign drives φ away from 0 and π/2 and to φ₀."""
     rho = friction(phi, delta)
     return rho.parallel - rho.spin
 
 
 def slip_angle_rate(friction: Friction, phi: npt.ArrayLike, delta: npt.ArrayLike) -> FloatArray:
-    """dφ/dτ = sin φ cos φ (ρ_∥ − ρ_ω), Q dτ = J dt (eq. 7.2).
-
-    Examples
-    --------
-    >>> float(slip_angle_rate(by_closed_form, 0.5, 0.0).round(6))
-    0.214552
-    """
+    """dφ/dτ = sin φ cos φ (ρ_∥ − ρ_ω), Q dτ = J dt (eq. 7.2)."""
     angle = np.asarray(phi)
     return np.asarray(np.sin(angle) * np.cos(angle) * excess(friction, angle, delta))
 
 
 def slip_angle_flow(friction: Friction) -> list[Claim]:
-    """Section 7, corollaries 7 and 8: which way φ moves; its trivial rests are unstable.
-
-    Examples
-    --------
-    >>> [round(claim.computed, 3) for claim in slip_angle_flow(by_closed_form)[:3]]
-    [0.5, 0.4, -0.333]
-    """
+    """Section 7, corollaries 7 and 8: which way φ moves; its trivial rests are unstable."""
     zero, quarter, right = (excess(friction, phi, HEIGHTS) for _, phi in ANGLES)
     step = 1e-6
     growth = slip_angle_rate(friction, step, HEIGHTS) / step
@@ -182,11 +140,6 @@ def unique_limit(friction: Friction) -> list[Claim]:
     """Proposition 6: φ₀ is the only zero of ρ_∥ − ρ_ω in (0, π/2), and a simple one.
 
     One change of sign on the grid; away from φ₀ the difference, near φ₀ its slope keep off zero.
-
-    Examples
-    --------
-    >>> unique_limit(by_closed_form)[0].computed
-    1.0
     """
     difference = excess(friction, PHI[:, None], HEIGHTS)
     changes = (np.diff(np.sign(difference), axis=0) != 0.0).sum(axis=0)
@@ -206,13 +159,7 @@ def unique_limit(friction: Friction) -> list[Claim]:
 
 
 def slope_at_limit(friction: Friction) -> float:
-    """The largest d(ρ_∥ − ρ_ω)/dφ at φ₀(δ), δ ≤ 1, by a central difference.
-
-    Examples
-    --------
-    >>> round(slope_at_limit(by_closed_form), 4)
-    -1.5139
-    """
+    """The largest d(ρ_∥ − ρ_ω)/dφ at φ₀(δ), δ ≤ 1, by a central difference."""
     angle, step = limit_angle(HEIGHTS), 1e-5
     change = excess(friction, angle + step, HEIGHTS) - excess(friction, angle - step, HEIGHTS)
     return float(change.max() / (2.0 * step))
@@ -223,11 +170,6 @@ def reversal(friction: Friction) -> list[Claim]:
 
     Both components are odd in φ.  The paper reads that as reversibility; a reversal would turn the
     attractor φ₀ into a repeller −φ₀, so that their rates would add up to zero.
-
-    Examples
-    --------
-    >>> [claim.verdict for claim in reversal(by_closed_form)]
-    ['ok', 'ok', 'erratum']
     """
     delta = HEIGHTS
     phi = PHI[:, None]
@@ -257,13 +199,7 @@ def reversal(friction: Friction) -> list[Claim]:
 
 
 def limit_values() -> list[Claim]:
-    """Results 4 and 8: the limit ratio of a flat puck, and Λ about 7 and nearly constant.
-
-    Examples
-    --------
-    >>> [round(claim.computed, 4) for claim in limit_values()]
-    [0.653, 7.1567, 7.0667, 0.6151]
-    """
+    """Results 4 and 8: the limit ratio of a flat puck, and Λ about 7 and nearly constant."""
     slope = curvature_slope(HEIGHTS)
     return [
         # 0.65300... are the digits that stand; the next is not known

@@ -62,8 +62,6 @@ class Picture:
 def draw(picture: Picture) -> Figure:
     """The panels of a picture.
 
-    Examples
-    --------
     >>> line = PlotLine(np.array([0.0, 1.0]), np.array([0.0, 2.0]), "twice")
     >>> len(draw(Picture("A line", [Panel("x / m", "y / m", [line])])).axes)
     1

@@ -14,8 +14,6 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 
     NaN if the function has the same sign at both.
 
-    Examples
-    --------
     >>> round(root(lambda x: x * x - 2.0, 0.0, 2.0), 12)
     1.414213562373
     """
@@ -35,8 +33,6 @@ def root(function: Callable[[float], float], low: float, high: float) -> float:
 def power(size: npt.ArrayLike, quantity: npt.ArrayLike) -> float:
     """The exponent of quantity ~ size^power, from the first and the last of the values.
 
-    Examples
-    --------
     >>> round(power([1.0, 0.5, 0.1], [3.0, 0.75, 0.03]), 12)
     2.0
     """

@@ -30,8 +30,6 @@ def simulate(
 ) -> Trajectory:  # fmt: skip
     """The motion with r = J = 1 by closed forms.
 
-    Examples
-    --------
     >>> simulate((1.0, 0.0), 0.0, delta=0.5).stop_time
     1.0
     """
@@ -48,8 +46,6 @@ def launch(
     ``shares`` are the times of its states, as shares of the stop time still left; 101 equally
     spaced states by default.
 
-    Examples
-    --------
     >>> launch(simulate, 5.0, 0.5, shares=[1.0, 0.0]).slip_speed.tolist()
     [1.0, 0.0]
     """
@@ -68,8 +64,6 @@ def launch(
 def velocity(run: Trajectory) -> FloatArray:
     """(v_x, v_y) of every state, shape (n, 2).
 
-    Examples
-    --------
     >>> velocity(simulate((3.0, 4.0), 0.0, delta=0.5))[0].round(12).tolist()
     [3.0, 4.0]
     """
@@ -79,8 +73,6 @@ def velocity(run: Trajectory) -> FloatArray:
 def time_left(run: Trajectory) -> FloatArray:
     """How long before the stop each state is.
 
-    Examples
-    --------
     >>> time_left(simulate((1.0, 0.0), 0.0, delta=0.5, times=[0.25])).tolist()
     [0.75]
     """
@@ -90,8 +82,6 @@ def time_left(run: Trajectory) -> FloatArray:
 def slip_ratio(run: Trajectory) -> FloatArray:
     """ε = rω/v of every state; the puck must be moving.
 
-    Examples
-    --------
     >>> float(slip_ratio(simulate((1.0, 0.0), 5.0, delta=0.5, frames=1))[0].round(12))
     5.0
     """
@@ -101,8 +91,6 @@ def slip_ratio(run: Trajectory) -> FloatArray:
 def curvature_radius(friction_across: FloatArray, run: Trajectory) -> FloatArray:
     """R = Q² cos φ/(sin φ ρ_⊥ J), from mv²/R = F_⊥; ``friction_across`` is ρ_⊥ at the states.
 
-    Examples
-    --------
     >>> from puck_tables import resultants
     >>> run = simulate((1.0, 0.0), 1.0, delta=1.0, frames=1)
     >>> across = resultants(run.slip_angle, 1.0).perpendicular

@@ -21,13 +21,7 @@ SPIN = np.linspace(0.0, 10.0, 41)
 
 
 def claims(run: Simulate = simulate) -> list[Claim]:
-    """All claims of this file, for the program's motions or others put to the test.
-
-    Examples
-    --------
-    >>> all(claim.verdict != "DIFFERS" for claim in claims())
-    True
-    """
+    """All claims of this file, for the program's motions or others put to the test."""
     return [*similar_paths(run), *five_shapes(run), *nearly_straight_lines(run)]
 
 
@@ -42,11 +36,6 @@ def similar_paths(run: Simulate) -> list[Claim]:
     A motion, halfway to its stop, and another one launched there in its own way (with the same
     rω/v, but smaller, mirrored and turned; type D: with the same Q) must go on along one path up to
     scale, rotation and reflection, which the first point fixes.
-
-    Examples
-    --------
-    >>> [claim.holds for claim in similar_paths(simulate)]
-    [True, True, True]
     """
     found = []
     shares = np.linspace(1.0, 0.0, 51)
@@ -73,11 +62,6 @@ def bend(run: Simulate, ratio: float) -> float:
     """s/R of a motion at its launch: path to the stop over radius of curvature.
 
     A number that no similarity changes; along a path of type D it stays δ/Λ.
-
-    Examples
-    --------
-    >>> round(bend(simulate, 1.0), 4)
-    0.1252
     """
     motion = launch(run, ratio, DELTA, shares=[1.0])
     across = by_closed_form(motion.slip_angle, DELTA).perpendicular
@@ -85,13 +69,7 @@ def bend(run: Simulate, ratio: float) -> float:
 
 
 def five_shapes(run: Simulate) -> list[Claim]:
-    """Result 7: a point, a ray, a self-similar curve, and two others that are not.
-
-    Examples
-    --------
-    >>> [claim.holds for claim in five_shapes(simulate)]
-    [True, True, True, True, True]
-    """
+    """Result 7: a point, a ray, a self-similar curve, and two others that are not."""
     limit = float(limit_ratio(DELTA))
     point = launch(run, math.inf, DELTA)
     ray = launch(run, 0.0, DELTA, heading=0.3)
@@ -120,13 +98,7 @@ def five_shapes(run: Simulate) -> list[Claim]:
 
 
 def ends_against_spin(run: Simulate, delta: float) -> FloatArray:
-    """Stop time, x and y of launches with v = (1, 0) and the spins of Fig. 4, shape (3, n).
-
-    Examples
-    --------
-    >>> ends_against_spin(simulate, 1.0)[:, 20].round(6).tolist()  # ω = 5
-    [4.000189, 2.257241, -0.308477]
-    """
+    """Stop time, x and y of launches with v = (1, 0) and the spins of Fig. 4, shape (3, n)."""
     stops = [run((1.0, 0.0), float(w0), delta=delta, frames=1) for w0 in SPIN]
     return np.array([(r.stop_time, *r.stop_position) for r in stops]).T
 
@@ -135,11 +107,6 @@ def nearly_straight_lines(run: Simulate) -> list[Claim]:
     """Fig. 4: stop time and place grow nearly linearly with the spin.
 
     Measured by the largest distance from the straight line that fits best, over the range.
-
-    Examples
-    --------
-    >>> [claim.holds for claim in nearly_straight_lines(simulate)]
-    [True, True]
     """
     time, x, _ = ends_against_spin(run, DELTA)
 
