@@ -20,11 +20,9 @@ RNG = np.random.default_rng(8)
 TARGETS = RNG.uniform(-3.0, 3.0, (40, 2))
 WISHES = (
     {"spin": RNG.normal(size=40) * np.where(np.arange(40) % 7 == 0, 0.0, 5.0)},
-    {"speed": RNG.uniform(0.5, 3.0, 40)},
-    {"stop_time": RNG.uniform(1.0, 4.0, 40)},
-    {"max_speed": 2.0, "max_spin": 4.0},
-    {},
-)
+    {"speed": RNG.uniform(0.5, 3.0, 40)}, {"stop_time": RNG.uniform(1.0, 4.0, 40)},
+    {"max_speed": 2.0, "max_spin": 4.0}, {},
+)  # fmt: skip
 
 
 @pytest.mark.thorough

@@ -62,24 +62,17 @@ def large(path: Path) -> None:
 
 
 MADE = {
-    "missing": lambda path: None,
-    "empty": Path.touch,
-    "text": lambda path: path.write_text("puck"),
+    "missing": lambda path: None, "empty": Path.touch, "text": lambda path: path.write_text("puck"),
     "binary": lambda path: path.write_bytes(bytes(range(256)) * 8),
     "cut": lambda path: path.write_bytes(SHIPPED["resultants"][:50_000]),
-    "first bytes": lambda path: path.write_bytes(SHIPPED["resultants"][:8]),
-    "newer": newer,
-    "stranger": stranger,
-    "folder": Path.mkdir,
-    "pipe": os.mkfifo,
-    "socket": listening,
+    "first bytes": lambda path: path.write_bytes(SHIPPED["resultants"][:8]), "newer": newer,
+    "stranger": stranger, "folder": Path.mkdir, "pipe": os.mkfifo, "socket": listening,
     "loop": lambda path: path.symlink_to(path.name),
     "zeros": lambda path: path.symlink_to("/dev/zero"),
     "null": lambda path: path.symlink_to("/dev/null"),
     "full": lambda path: path.symlink_to("/dev/full"),
-    "memory": lambda path: path.symlink_to("/proc/self/mem"),
-    "large": large,
-}
+    "memory": lambda path: path.symlink_to("/proc/self/mem"), "large": large,
+}  # fmt: skip
 WORDS = {
     "missing": "there is no table file", "newer": "format 7.0, newer", "cut": "digest",
     "first bytes": "digest", "stranger": "not a table of this program", "large": "too large",

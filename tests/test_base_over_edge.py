@@ -343,11 +343,9 @@ def test_a_ring_is_carried_up_to_its_centre():
 
 
 FLOORS = [
-    Floor(),
-    Floor(law=StribeckLaw(0.3, 0.1, speed=0.3)),
-    Floor(strips=Strips((0.02,), (0.3, 0.2))),
+    Floor(), Floor(law=StribeckLaw(0.3, 0.1, speed=0.3)), Floor(strips=Strips((0.02,), (0.3, 0.2))),
     Floor(static_ratio=1.4, grips=[Grip([[0.0, 1.0], [1.0, 0.6]])]),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("floor", FLOORS)

@@ -109,10 +109,8 @@ def test_every_compiled_function_is_kept_in_that_folder():
 @pytest.mark.thorough
 def test_four_processes_may_fill_the_cache_at_once(tmp_path: Path):
     command = [
-        sys.executable,
-        "-c",
-        "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))",
-    ]
+        sys.executable, "-c", "import puck_tables as p; print(float(p.motion.limit_ratio(0.0)))",
+    ]  # fmt: skip
     env = {**os.environ, **COMPILED, "NUMBA_CACHE_DIR": str(tmp_path)}
     running = [
         subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) for _ in range(4)

@@ -263,12 +263,8 @@ def _answer(where: str, context: ssl.SSLContext | None) -> bytes:
 
 
 ANSWERS = (
-    b"",
-    b"SSH-2.0-OpenSSH_9.6\r\n",
-    b"HTTP/1.1 400 Bad Request\r\n\r\n",
-    bytes(64),
-    b"\1" * 8,
-)
+    b"", b"SSH-2.0-OpenSSH_9.6\r\n", b"HTTP/1.1 400 Bad Request\r\n\r\n", bytes(64), b"\1" * 8,
+)  # fmt: skip
 
 
 @pytest.mark.thorough

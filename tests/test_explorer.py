@@ -78,21 +78,11 @@ def test_numbers_are_the_library_s(page: Any, law: str, count: int):
     page.evaluate(f"explorer.setLaw('{law}')")
     for _ in range(count):
         low = {
-            "speed": 0,
-            "heading": -180,
-            "spin": -150,
-            "radius": 5,
-            "height": 0,
-            "friction": 0.01,
-        }
+            "speed": 0, "heading": -180, "spin": -150, "radius": 5, "height": 0, "friction": 0.01,
+        }  # fmt: skip
         high = {
-            "speed": 5,
-            "heading": 180,
-            "spin": 150,
-            "radius": 200,
-            "height": 200,
-            "friction": 1,
-        }
+            "speed": 5, "heading": 180, "spin": 150, "radius": 200, "height": 200, "friction": 1,
+        }  # fmt: skip
         for name in low:
             page.evaluate(f"explorer.set('{name}', {rng.uniform(low[name], high[name])})")
         now, run = shown(page)

@@ -22,31 +22,25 @@ from puck_tables.kernels.patience import here
 # a question for every public door that computes
 DOORS = {
     "simulate": "PUCK.simulate((1.0, 0.2), 5.0).stop_time",
-    "stop": "PUCK.stop((1.0, 0.2), 5.0).stop_time",
-    "stop of": "pt.stop((1.0, 0.2), 5.0).stop_time",
+    "stop": "PUCK.stop((1.0, 0.2), 5.0).stop_time", "stop of": "pt.stop((1.0, 0.2), 5.0).stop_time",
     "stops": "pt.stop_arrays([1.0, 0.9], [0.2, 0.1], [5.0, 4.0])[0]",
     "states": "PUCK.states((1.0, 0.2), 5.0, 0.1).x",
-    "states of": "pt.states((1.0, 0.2), 5.0, 0.1).x",
-    "aim": "PUCK.aim((0.2, 0.1)).launch_spin",
+    "states of": "pt.states((1.0, 0.2), 5.0, 0.1).x", "aim": "PUCK.aim((0.2, 0.1)).launch_spin",
     "sweep": "PUCK.sweep([0.0, 1.0], [1.0, 2.0]).stop_time",
     "sample": "PUCK.sample(4, seed=1, speed=pt.Normal(1.0, 0.1), spin=3.0).stop_time",
-    "regime": "PUCK.regime((1.0, 0.2), 5.0)",
-    "pull": "PUCK.limit_surface().unit_force",
+    "regime": "PUCK.regime((1.0, 0.2), 5.0)", "pull": "PUCK.limit_surface().unit_force",
     "wrench": "PUCK.wrench((1.0, 0.2), 5.0, jacobian=True).torque",
     "twist": "PUCK.twist((0.1, 0.2), 0.001).spin",
     "push": "pt.push(pt.Puck(base='box:0.2x0.1', friction=0.3), (-0.1, 0.0), (1.0, 0.1), 0.3).spin",
     "scene": "pt.Scene.load('incline').simulate().end_time",
     "world": "pt.Scene.load('newtons-row').world().advance(0.01)",
     "table": "pt.Table.shipped().resultants(0.3, 0.5).spin",
-    "resultants": "pt.resultants(0.3, 0.5).spin",
-    "limit": "pt.motion.limit_ratio(0.1)",
-    "share": "pt.contact.loaded_share(0.3, 0.5)",
-    "law": "pt.law_of('annulus:0.8').name",
-    "case": "pt.reference_case('coin').time",
-    "asperity": "pt.chetaev.Asperity",
+    "resultants": "pt.resultants(0.3, 0.5).spin", "limit": "pt.motion.limit_ratio(0.1)",
+    "share": "pt.contact.loaded_share(0.3, 0.5)", "law": "pt.law_of('annulus:0.8').name",
+    "case": "pt.reference_case('coin').time", "asperity": "pt.chetaev.Asperity",
     "export": "pt.export_source('c', tol=1e-3).text",
     "frame": "PUCK.stop((1.0, 0.2), 5.0).dataset()",
-}
+}  # fmt: skip
 AT_ONCE = """
 import sys, threading
 import puck_tables as pt

@@ -66,11 +66,8 @@ def test_the_law_of_many_films_is_chosen(law):
 def test_pucks_of_other_kinds_are_found(puck, known, free):
     found = pt.fit(film(puck, 3), known, free=free)
     truth = {
-        "friction": puck.friction,
-        "delta": puck.delta,
-        "gyration": puck.gyration,
-        "inner": 0.6,
-    }
+        "friction": puck.friction, "delta": puck.delta, "gyration": puck.gyration, "inner": 0.6,
+    }  # fmt: skip
     for name in free or ("friction", "delta"):
         number = found[name]
         assert abs(number.value - truth[name]) < 4.5 * number.error, name

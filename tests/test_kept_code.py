@@ -314,10 +314,8 @@ def test_code_for_all_machines_is_made_on_one(tmp_path: Path):
 
     def python(program: str, *arguments: object) -> str:
         environment = {
-            **os.environ,
-            "NUMBA_DISABLE_JIT": "0",
-            "NUMBA_CACHE_DIR": str(tmp_path / "own"),
-        }
+            **os.environ, "NUMBA_DISABLE_JIT": "0", "NUMBA_CACHE_DIR": str(tmp_path / "own"),
+        }  # fmt: skip
         return subprocess.run(
             [sys.executable, "-c", program, *map(str, arguments)],
             env=environment, capture_output=True, text=True, check=True,

@@ -210,15 +210,10 @@ def numbers(largest: float) -> st.SearchStrategy[float]:
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(
-    vx=numbers(5.0),
-    vy=numbers(5.0),
-    w=numbers(50.0),
-    delta=st.floats(0, 1),
-    angle=st.floats(-3, 3),
-    scale=st.floats(1e-3, 1e3),
-    decel=st.floats(0.01, 100),
+    vx=numbers(5.0), vy=numbers(5.0), w=numbers(50.0), delta=st.floats(0, 1),
+    angle=st.floats(-3, 3), scale=st.floats(1e-3, 1e3), decel=st.floats(0.01, 100),
     radius=st.floats(0.01, 10),
-)
+)  # fmt: skip
 def test_symmetries(vx, vy, w, delta, angle, scale, decel, radius):
     options = {"delta": delta, "decel": decel, "radius": radius, "tol": 1e-9}
     base = simulate((vx, vy), w, frames=20, **options)

@@ -103,16 +103,11 @@ def test_a_path_of_many_turns_is_round(drawn: Any) -> None:
 
 
 WORDS = {
-    "turntable": "floor: turntable 5 rad/s",
-    "washer-on-conveyor": "floor: belt (0.5, 0) m/s",
-    "coin-on-rail": "rail",
-    "pivoted-disc": "pivot",
-    "skate-blade": "blade",
-    "incline": "downhill, slope 0.1 rad",
-    "wet-patch": "f = 0.06",
-    "shuffleboard": "edge",
+    "turntable": "floor: turntable 5 rad/s", "washer-on-conveyor": "floor: belt (0.5, 0) m/s",
+    "coin-on-rail": "rail", "pivoted-disc": "pivot", "skate-blade": "blade",
+    "incline": "downhill, slope 0.1 rad", "wet-patch": "f = 0.06", "shuffleboard": "edge",
     "air-hockey": "wall",
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", few(4, WORDS))

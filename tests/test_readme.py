@@ -18,15 +18,9 @@ EXAMPLES = sorted((ROOT / "docs" / "gallery").rglob("*.py"))
 every_page = pytest.mark.parametrize("page", PAGES)
 # their commands take long
 LONG = (
-    "curling.md",
-    "fits.md",
-    "command-line.md",
-    "several-pucks.md",
-    "explorer.md",
-    "scenes.md",
-    "export.md",
-    "paths.md",
-)
+    "curling.md", "fits.md", "command-line.md", "several-pucks.md", "explorer.md", "scenes.md",
+    "export.md", "paths.md",
+)  # fmt: skip
 
 
 def console_examples(text: str) -> list[tuple[str, str]]:

@@ -31,11 +31,9 @@ def spline(coefficients: np.ndarray, position: np.ndarray) -> np.ndarray:
     cell = np.minimum(position.astype(int), len(coefficients) - 4)
     t = (position - cell).reshape(-1, *([1] * (coefficients.ndim - 1)))
     weights = (
-        (1 - t) ** 3 / 6,
-        (3 * t**3 - 6 * t**2 + 4) / 6,
-        (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6,
+        (1 - t) ** 3 / 6, (3 * t**3 - 6 * t**2 + 4) / 6, (-3 * t**3 + 3 * t**2 + 3 * t + 1) / 6,
         t**3 / 6,
-    )
+    )  # fmt: skip
     return sum(w * coefficients[cell + i] for i, w in enumerate(weights))
 
 

@@ -113,16 +113,12 @@ def put(path: str, value: Any) -> Callable[[dict[str, Any], Path], None]:
 SCENE_CHANGES = {
     "the force": edited("force.csv", "t,Fx,Fy\n0,0.01,0\n9,0,0.0001\n"),
     "the profile": edited("profile.csv", "0,1\n1,0.6\n"),
-    "a range": put("floor.slope", "0.01:0.06:3"),
-    "the friction": put("puck.friction", 0.16),
-    "the radius": put("puck.radius", 0.05),
-    "the mass": put("puck.mass", 0.3),
-    "the spin": put("launch.spin", 3.0000001),
-    "the velocity": put("launch.velocity", [0.5, 0.2]),
-    "the tolerance": put("tol", 1e-5),
-    "a time": put("time", 100.0),
+    "a range": put("floor.slope", "0.01:0.06:3"), "the friction": put("puck.friction", 0.16),
+    "the radius": put("puck.radius", 0.05), "the mass": put("puck.mass", 0.3),
+    "the spin": put("launch.spin", 3.0000001), "the velocity": put("launch.velocity", [0.5, 0.2]),
+    "the tolerance": put("tol", 1e-5), "a time": put("time", 100.0),
     "a file in place of another": put("force.over_time", ""),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENE_CHANGES)

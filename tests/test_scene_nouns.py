@@ -33,11 +33,9 @@ def test_the_puck_of_a_scene_is_the_puck_of_free_motion() -> None:
 
 def test_a_scene_says_the_same_from_python_and_from_tables() -> None:
     made = pt.Scene(
-        PUCK,
-        pt.Floor(slope=0.05),
-        LAUNCH,
+        PUCK, pt.Floor(slope=0.05), LAUNCH,
         walls=[pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)],
-    )
+    )  # fmt: skip
     tables = {
         "puck": {"radius": 0.04, "height": 0.02, "friction": 0.15, "mass": 0.2},
         "floor": {"slope": 0.05}, "launch": {"velocity": [0.8, 0.1], "spin": 20.0},

@@ -200,3 +200,14 @@ def test_without_friction_nothing_moves_at_rest():
         scene(puck={"friction": 0.0}, launch={"velocity": [0, 0], "spin": 0}, time=1.0)
     )
     assert run.end == "at rest" and run.end_error < 1e-14
+
+
+def test_what_is_hardly_launched_on_a_steep_slope_goes_as_from_rest():
+    """Errors were held to a share of the launch, below the rounding of what came of it."""
+    runs = [
+        simulate_scene(scene(
+            puck={"base": "box:0.6x0.4", "friction": 0.1}, floor={"slope": 0.3}, time=0.5,
+            launch={"velocity": [-speed, 2 * speed], "spin": 0.0}))
+        for speed in (0.0, 1e-12)
+    ]  # fmt: skip
+    assert runs[1].last["x"] == pytest.approx(runs[0].last["x"], abs=1e-10)

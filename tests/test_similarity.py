@@ -198,12 +198,8 @@ def test_states_against_the_integrator():
     ends = [*(10.0 ** -np.arange(1, 13, 2)), 0.0]
     ratios = [*np.exp(rng.normal(size=25)), *ends, *(1.0 / np.array(ends[:-1]))]
     ratios += [
-        1.0,
-        1.0 - 1e-12,
-        1.0 + 1e-7,
-        float(limit_ratio(0.4)),
-        float(limit_ratio(0.4)) + 1e-9,
-    ]
+        1.0, 1.0 - 1e-12, 1.0 + 1e-7, float(limit_ratio(0.4)), float(limit_ratio(0.4)) + 1e-9,
+    ]  # fmt: skip
     for k in ratios:
         v, w = 1.0 / math.hypot(1.0, k), k / math.hypot(1.0, k)
         delta = 0.4 if k > 1.4 else float(rng.choice([0.0, rng.random(), 1.0]))

@@ -31,12 +31,10 @@ ALIKE = Ellipse(1.0, 1.0, 1.0, 0.0)
 PRESSURES = ("ring", "galin", "hertz", "annulus:0.8", PROFILE)
 # over ρ = sin θ: W ρ dρ as a function of θ, over dθ, up to a factor
 WEIGHTS = {
-    "uniform": lambda s, c: s * c,
-    "galin": lambda s, c: s,
-    "hertz": lambda s, c: s * c * c,
+    "uniform": lambda s, c: s * c, "galin": lambda s, c: s, "hertz": lambda s, c: s * c * c,
     "annulus:0.8": lambda s, c: s * c * (s > 0.8),
     PROFILE.name: lambda s, c: np.interp(s, *PROFILE.profile) * (s > 0.1) * s * c,
-}
+}  # fmt: skip
 CUTS = {"annulus:0.8": [0.8], PROFILE.name: [0.1, 0.4, 0.7]}
 
 

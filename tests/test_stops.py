@@ -112,12 +112,8 @@ def test_axes_only_of_what_is_ranged():
     single = sweep(1.0, 2.0)
     assert single.stop_time.shape == ()
     assert single.fixed == {
-        "decel": 1.0,
-        "radius": 1.0,
-        "delta": 0.5,
-        "launch_speed": 2.0,
-        "launch_spin": 1.0,
-    }
+        "decel": 1.0, "radius": 1.0, "delta": 0.5, "launch_speed": 2.0, "launch_spin": 1.0,
+    }  # fmt: skip
 
 
 def test_figure_4_of_the_paper():

@@ -248,11 +248,9 @@ def test_pickles_in_files_of_deeplabcut_are_never_run(tmp_path: Path, pickled: b
 def test_tables_of_sleap(tmp_path: Path):
     rows = [
         "track,frame_idx,instance.score,head.x,head.y,head.score,tail.x,tail.y,tail.score",
-        "t0,0,0.93,101.5,55.25,0.97,140.5,55.25,0.88",
-        "t1,0,0.93,1.5,5.25,0.97,1.5,6.25,0.88",
-        "t0,3,0.51,103,57,0.20,,,",
-        "t1,3,0.51,3,7,0.20,3,9,",
-    ]
+        "t0,0,0.93,101.5,55.25,0.97,140.5,55.25,0.88", "t1,0,0.93,1.5,5.25,0.97,1.5,6.25,0.88",
+        "t0,3,0.51,103,57,0.20,,,", "t1,3,0.51,3,7,0.20,3,9,",
+    ]  # fmt: skip
     file = saved(tmp_path, "sleap.csv", "\n".join(rows))
     one, two = read_tracks(file, **PIXELS, centre="head", toward="tail")
     assert (one.name, two.name) == ("sleap.csv: t0", "sleap.csv: t1")

@@ -242,12 +242,8 @@ def test_files(measured: measurement.TradeOff, tmp_path: Path):
     rows = pandas.read_csv(tmp_path / "t.csv")
     assert len(rows) == len(measured.methods)
     assert set(rows.question) == {
-        "resultants",
-        "stop",
-        "trajectory",
-        "state",
-        *scipy_methods.BODIES,
-    }
+        "resultants", "stop", "trajectory", "state", *scipy_methods.BODIES,
+    }  # fmt: skip
     with pytest.raises(OutputError, match="exists already"):
         measured.save(tmp_path / "t.csv")
 

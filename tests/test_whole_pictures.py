@@ -278,12 +278,8 @@ def test_every_colour_is_seen_on_white() -> None:
     rng = np.random.default_rng(4)
     shares = np.linspace(0.0, 1.0, 20)
     fixed = [
-        style.BLUE,
-        style.GREY,
-        *style.COLORS,
-        floor_axes._MOVING,
-        *tradeoff_figure._MORE_COLORS,
-    ]
+        style.BLUE, style.GREY, *style.COLORS, floor_axes._MOVING, *tradeoff_figure._MORE_COLORS,
+    ]  # fmt: skip
     fixed += [colour for colour, _ in scene_map_figure._LOOKS]
     fixed += [to_hex(style.shaded(share)) for share in shares]
     fixed += [to_hex(style.ramp()(share)) for share in shares]

@@ -150,10 +150,8 @@ def test_no_two_files_and_no_two_classes_have_one_name():
 def test_a_word_is_noticed_in_every_kind_of_name():
     tree = ast.parse("class FlowSection:\n    async def at_front(self, *, the_cut=1): ...\n")
     assert [word for name in names_in(tree) for word in refused_in(name)] == [
-        "flow",
-        "front",
-        "cut",
-    ]
+        "flow", "front", "cut",
+    ]  # fmt: skip
     assert (
         refused_in("limit_surface") == refused_in("asperity_curve") == refused_in("upfront") == []
     )

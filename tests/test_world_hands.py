@@ -34,11 +34,8 @@ def cushions(side: float = 0.6) -> list[pt.Wall]:
 def table() -> pt.Scene:
     """A mallet, three pucks, four walls, a pocket."""
     pucks = [
-        mallet(-0.4, 0.0),
-        puck_at(0.0, 0.0),
-        puck_at(0.2, 0.1),
-        puck_at(0.2, -0.1, name="last"),
-    ]
+        mallet(-0.4, 0.0), puck_at(0.0, 0.0), puck_at(0.2, 0.1), puck_at(0.2, -0.1, name="last"),
+    ]  # fmt: skip
     return pt.Scene(pucks=pucks, walls=cushions(), pockets=[pt.Pocket((0.55, 0.55), 0.03)])
 
 
@@ -46,11 +43,9 @@ def bits(world: pt.World) -> list[bytes]:
     """All that a world knows."""
     engine, counts = world._engine, world._engine.counts
     rows = {
-        "events": g.N_EVENTS,
-        "history": g.N_HISTORY,
-        "work_rows": g.N_WORK_ROWS,
+        "events": g.N_EVENTS, "history": g.N_HISTORY, "work_rows": g.N_WORK_ROWS,
         "pieces": g.N_PIECES,
-    }
+    }  # fmt: skip
     names = ("clock", "discs", "kinds", "segments", "group", "next_time", "next_partner", "counts",
              "drives", "hangs", "scale", "forcing", "spans", "launches")  # fmt: skip
     parts = [getattr(engine, name) for name in names]
@@ -98,12 +93,10 @@ def meddle(rng: np.random.Generator, world: pt.World, forces: bool = True) -> No
     calls: list[Callable[[], Any]] = [
         lambda: world.place(who, rng.uniform(-0.5, 0.5, 2), velocity=v),
         lambda: world.place(who, angle=1.0, spin=float(10.0 * v[0])),
-        lambda: world.strike(who, v, 5.0),
-        lambda: world.drive(0, v),
+        lambda: world.strike(who, v, 5.0), lambda: world.drive(0, v),
         lambda: world.drive(0, towards=rng.uniform(-0.5, 0.5, 2), speed=0.7),
-        lambda: world.remove(who),
-        lambda: world.advance(float(rng.uniform(0.0, 0.1))),
-    ]
+        lambda: world.remove(who), lambda: world.advance(float(rng.uniform(0.0, 0.1))),
+    ]  # fmt: skip
     if forces:
         calls.append(lambda: world.apply_force(who, 0.3 * v, 1e-3, duration=0.05))
     before = bits(world)

@@ -10,7 +10,7 @@ from boards import draw, puck_at
 from pushing_judge import Judge
 
 import puck_tables as pt
-from puck_tables.scene.run import HEATS, WORKS, residual
+from puck_tables.scene.run import HEATS, WORK_NAMES, residual
 from puck_tables.world.ledger import energies_of
 
 G = 9.80665
@@ -171,11 +171,9 @@ def test_a_stint_that_is_over_at_once_has_no_heat():
         return pt.Puck(0.03, friction=0.1, tangential=0.0, rim=0.3, launch=launch)
 
     pucks = [
-        puck_at(-0.06, 0, (1.0, 0.0)),
-        puck_at(0, 0),
-        puck_at(0.06, 0),
+        puck_at(-0.06, 0, (1.0, 0.0)), puck_at(0, 0), puck_at(0.06, 0),
         puck_at(0.03, high, spin=-20.0),
-    ]
+    ]  # fmt: skip
     run = pt.Scene(pucks=pucks).simulate()
     assert run.last["energy_given"] == pytest.approx(0.5 + 0.09, rel=1e-14)
     assert run.energy_residual < 1e-9
@@ -200,6 +198,6 @@ def test_a_map_books_what_its_runs_do(seed: int):
     assert ends.energy_residual.max() < 1e-9
     for k, speed in enumerate(speeds):
         run = board.at({path: speed}).simulate()
-        largest = max(float(np.max(np.abs(run.last[name]))) for name in (*HEATS, *WORKS))
-        for name in (*HEATS, *WORKS, "energy_given", "energy_gone", "kinetic_energy"):
+        largest = max(float(np.max(np.abs(run.last[name]))) for name in (*HEATS, *WORK_NAMES))
+        for name in (*HEATS, *WORK_NAMES, "energy_given", "energy_gone", "kinetic_energy"):
             np.testing.assert_allclose(ends.columns[name][k], run.last[name], atol=1e-7 * largest)

@@ -70,15 +70,13 @@ def quadrant(a, b) -> dict[str, mpf]:
         return asinh(a / y) if y > 0 else mpf(0)
 
     inner = {
-        "x/R": lambda y: radius(y) - y,
-        "y/R": lambda y: y * sine(y),
+        "x/R": lambda y: radius(y) - y, "y/R": lambda y: y * sine(y),
         "R": lambda y: (a * radius(y) + y * y * sine(y)) / 2,
         "xx/R": lambda y: (a * radius(y) - y * y * sine(y)) / 2,
-        "xy/R": lambda y: y * (radius(y) - y),
-        "yy/R": lambda y: y * y * sine(y),
+        "xy/R": lambda y: y * (radius(y) - y), "yy/R": lambda y: y * y * sine(y),
         "xR": lambda y: (radius(y) ** 3 - y**3) / 3,
         "yR": lambda y: y * (a * radius(y) + y * y * sine(y)) / 2,
-    }
+    }  # fmt: skip
     cuts = [mpf(0), *[c for c in (a / 10, a, 10 * a) if c < b], b]
     # signs: of an integrand odd in x the integral to −a is that to a, of an even one minus that
     return {

@@ -27,6 +27,7 @@ from puck_tables.scene.equations import (
     rates_by_blade,
     rates_here,
     slip_change,
+    slip_speed,
 )
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.ingredients import (
@@ -148,13 +149,18 @@ _ULP = 4e-16  # of a number: rounding of steps to it
 
 
 @inlined
-def follow_scales(scale: FloatArray, tolerance: float, body: Body, y: FloatArray) -> None:
+def follow_scales(
+    scale: FloatArray, tolerance: float, accel: float, body: Body, y: FloatArray
+) -> None:
     """Let the scales follow a motion that leaves them: no step is better than rounding.
 
-    Energies are known to a share of the largest.
+    That of friction is a share of all of it.  Energies are known to a share of the largest.
     """
+    share, slip = _ULP / tolerance, slip_speed(body.radius, y)
     for i in range(FORCE_WORK):
-        scale[i] = max(scale[i], _ULP / tolerance * abs(y[i]))
+        least = slip if i >= VX else slip * slip / accel
+        least = least / body.radius if i in (THETA, SPIN) else least
+        scale[i] = max(scale[i], share * max(abs(y[i]), least))
     largest = kinetic_energy(body, y)
     for i in range(FORCE_WORK, SIZE):
         largest = max(largest, abs(y[i]))

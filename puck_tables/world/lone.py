@@ -114,7 +114,7 @@ def _lay_out(
         buffer.scale[n] = length if n < VX else (speed if n < FORCE_WORK else energy)
     buffer.scale[THETA] = length / body.radius
     buffer.scale[SPIN] = speed / (slow * body.radius)
-    follow_scales(buffer.scale, tol, body, buffer.y)
+    follow_scales(buffer.scale, tol, engine.scale[1], body, buffer.y)
     to_laboratory(surface_of(model, t), buffer.y, -1.0)
 
 
@@ -253,13 +253,13 @@ def _last_of(
 
 
 @inlined
-def _go_on_from(model: Model, tol: float, buffer: LoneBuffer) -> None:
+def _go_on_from(model: Model, tol: float, accel: float, buffer: LoneBuffer) -> None:
     """The end of a step is the start of the next."""
     for n in range(SIZE):
         buffer.y[n] = buffer.new[n]
     for n in range(ROW):
         buffer.stages[0, n] = buffer.ends[ENDED, n]
-    follow_scales(buffer.scale, tol, model.body, buffer.y)
+    follow_scales(buffer.scale, tol, accel, model.body, buffer.y)
 
 
 @inlined
@@ -360,7 +360,7 @@ def follow_alone(
         now = target if landed else max(t + passed, now + length)  # ``passed`` may be rounded off
         h = min(h, 0.5 * (tips - now)) if now < tips else h
         over = _leads_off(engine, i, buffer) or 0.0 < tips - now < tol * unit
-        _go_on_from(model, tol, buffer)
+        _go_on_from(model, tol, engine.scale[1], buffer)
         larger, q = q, slip_speed(radius, y)
         if mode == SLIDES:
             stiff = _is_stiff(model, load, newton > 0.0, length, q, slip_rate(radius, stages))

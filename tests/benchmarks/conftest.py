@@ -32,14 +32,9 @@ class Measure:
         self.entries = entries
 
     def __call__(
-        self,
-        name: str,
-        function: Callable[[], Any],
-        *,
-        items: int = 1,
-        unit: str,
+        self, name: str, function: Callable[[], Any], *, items: int = 1, unit: str,
         error: float | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         function()  # compiled and warm before the clock starts
         self.benchmark(function)
         self.book(name, items, unit, error)

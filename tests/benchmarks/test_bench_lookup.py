@@ -68,11 +68,9 @@ def test_table_kernel(measure, table, points):
     fill_resultants(columns, sides, *points, out)
     error = against_closed_form(out, points)
     run(
-        measure,
-        "default table, kernel",
-        lambda: fill_resultants(columns, sides, *points, out),
+        measure, "default table, kernel", lambda: fill_resultants(columns, sides, *points, out),
         error,
-    )
+    )  # fmt: skip
 
 
 def test_table_bicubic(measure, table, points):
@@ -81,11 +79,9 @@ def test_table_bicubic(measure, table, points):
     fill_bicubic(coefficients, 1.0, *points, out)
     error = against_closed_form(out, points)
     run(
-        measure,
-        "the same as a bicubic, kernel",
-        lambda: fill_bicubic(coefficients, 1.0, *points, out),
-        error,
-    )
+        measure, "the same as a bicubic, kernel",
+        lambda: fill_bicubic(coefficients, 1.0, *points, out), error,
+    )  # fmt: skip
 
 
 def test_table_public(measure, table, points):
@@ -103,11 +99,9 @@ def test_closed_form_kernel(measure: Any, points: tuple[FloatArray, FloatArray])
 def test_closed_form_public(measure: Any, points: tuple[FloatArray, FloatArray]) -> None:
     error = against_quadrature(np.stack(puck_tables.resultants(*points)), points)
     run(
-        measure,
-        "closed forms, puck_tables.resultants",
-        lambda: puck_tables.resultants(*points),
+        measure, "closed forms, puck_tables.resultants", lambda: puck_tables.resultants(*points),
         error,
-    )
+    )  # fmt: skip
 
 
 def test_rival_uncompiled(measure: Any, points: tuple[FloatArray, FloatArray]) -> None:

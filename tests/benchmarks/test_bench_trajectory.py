@@ -197,12 +197,9 @@ def test_stop_kernel(measure: Any, launches: FloatArray, way: str) -> None:
     out, status = solver.all(columns)
     assert not status.any()
     measure(
-        f"{solver.selections[0].scheme.name}, 1000 launches",
-        lambda: solver.all(columns),
-        items=LAUNCHES,
-        unit="trajectory",
-        error=largest_error(out[:3].T, launches),
-    )
+        f"{solver.selections[0].scheme.name}, 1000 launches", lambda: solver.all(columns),
+        items=LAUNCHES, unit="trajectory", error=largest_error(out[:3].T, launches),
+    )  # fmt: skip
 
 
 @ONE_STOP
@@ -214,12 +211,9 @@ def test_stop_public(measure: Any, table: ResultantTable, launches: FloatArray) 
 
     stops = np.column_stack([stop().stop_time, stop().stop_position])
     measure(
-        "puck_tables.stop, 1000 launches",
-        stop,
-        items=LAUNCHES,
-        unit="trajectory",
+        "puck_tables.stop, 1000 launches", stop, items=LAUNCHES, unit="trajectory",
         error=largest_error(stops, launches),
-    )
+    )  # fmt: skip
 
 
 @ONE_STOP
@@ -246,12 +240,9 @@ def test_stop_closed_forms(measure: Any, launches: FloatArray) -> None:
     exact = Integration(NO_COLUMNS, NO_SECTION, stepping_of(selection), Method.RK4)
     columns = np.ascontiguousarray(launches.T)
     measure(
-        "closed forms in the same loop, 1000 launches",
-        lambda: exact.all(columns),
-        items=LAUNCHES,
-        unit="trajectory",
-        error=largest_error(exact.all(columns)[0][:3].T, launches),
-    )
+        "closed forms in the same loop, 1000 launches", lambda: exact.all(columns), items=LAUNCHES,
+        unit="trajectory", error=largest_error(exact.all(columns)[0][:3].T, launches),
+    )  # fmt: skip
 
 
 @ONE_STOP
@@ -262,20 +253,16 @@ def test_stop_rival_scipy(measure: Any, method: str) -> None:
     note(measure.benchmark, setting)
     measure(
         f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
-        lambda: over_time(method, setting, end),
-        unit="trajectory",
-        error=setting.error,
-    )
+        lambda: over_time(method, setting, end), unit="trajectory", error=setting.error,
+    )  # fmt: skip
 
 
 @ONE_STOP
 def test_stop_rival_patch_script(measure: Any) -> None:
     measure(
-        "rival: plain script, 20 x 40 patches",
-        lambda: disc_by_patches(*LAUNCH, DELTA),
-        unit="trajectory",
-        error=error_of(disc_by_patches(*LAUNCH, DELTA), LAUNCH),
-    )
+        "rival: plain script, 20 x 40 patches", lambda: disc_by_patches(*LAUNCH, DELTA),
+        unit="trajectory", error=error_of(disc_by_patches(*LAUNCH, DELTA), LAUNCH),
+    )  # fmt: skip
 
 
 # --- one tight trajectory -------------------------------------------------------------------------
@@ -318,11 +305,9 @@ def test_tight_simulate(measure: Any, table: ResultantTable, source: str) -> Non
 
     stop = [run().stop_time, *run().stop_position]
     measure(
-        f"{source}, simulate (101 states, error estimate)",
-        run,
-        unit="trajectory",
+        f"{source}, simulate (101 states, error estimate)", run, unit="trajectory",
         error=error_of(stop, LAUNCH),
-    )
+    )  # fmt: skip
 
 
 @TIGHT
@@ -331,11 +316,9 @@ def test_tight_rival_scipy(measure: Any) -> None:
     setting = tried("DOP853", setting, end)
     note(measure.benchmark, setting)
     measure(
-        "rival: scipy DOP853 over time, rtol 1e-11",
-        lambda: over_time("DOP853", setting, end),
-        unit="trajectory",
-        error=setting.error,
-    )
+        "rival: scipy DOP853 over time, rtol 1e-11", lambda: over_time("DOP853", setting, end),
+        unit="trajectory", error=setting.error,
+    )  # fmt: skip
 
 
 @TIGHT
@@ -346,10 +329,8 @@ def test_tight_rival_scipy_cheapest(measure: Any, method: str) -> None:
     note(measure.benchmark, setting)
     measure(
         f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
-        lambda: over_time(method, setting, end),
-        unit="trajectory",
-        error=setting.error,
-    )
+        lambda: over_time(method, setting, end), unit="trajectory", error=setting.error,
+    )  # fmt: skip
 
 
 # --- the command line -----------------------------------------------------------------------------

@@ -206,13 +206,7 @@ def slide(
 
     tips.terminal = rests.terminal = True  # type: ignore[attr-defined]
     run = solve_ivp(
-        rates,
-        (0.0, 5.0),
-        state,
-        method="DOP853",
-        rtol=1e-9,
-        atol=1e-11,
-        max_step=4e-3,
+        rates, (0.0, 5.0), state, method="DOP853", rtol=1e-9, atol=1e-11, max_step=4e-3,
         events=[tips, rests],
-    )
+    )  # fmt: skip
     return float(run.t[-1]), run.y[:, -1]

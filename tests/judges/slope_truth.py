@@ -108,13 +108,9 @@ def stop_slopes(
 
 
 def state_slopes(
-    law: str,
-    delta: float,
-    gyration: float,
-    phi: np.ndarray,
-    moments: np.ndarray,
+    law: str, delta: float, gyration: float, phi: np.ndarray, moments: np.ndarray,
     near: bool = False,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """Times (m, n), x, y, body angle, vx, vy, rω (6, m, n), by v, rω, k/r, δ, t (5, 6, m, n)."""
     values, by, rates = slopes(law, delta, gyration, phi, moments, near)
     rows = [X, Y, BODY, VX, VY, RIM]

@@ -131,14 +131,9 @@ def closeness(scene: dict[str, Any]) -> float:
 
 
 def cartesian(
-    scene: dict[str, Any],
-    slider: Slider,
-    t: float,
-    z: np.ndarray,
-    u: np.ndarray,
-    size: float,
+    scene: dict[str, Any], slider: Slider, t: float, z: np.ndarray, u: np.ndarray, size: float,
     until: float,
-) -> tuple[float, np.ndarray]:
+) -> tuple[float, np.ndarray]:  # fmt: skip
     """When the slip ends, and the way (x, y, r θ), by Radau; kinks of the force end a piece."""
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:
@@ -171,14 +166,9 @@ def cartesian(
 
 
 def by_direction(
-    scene: dict[str, Any],
-    slider: Slider,
-    t: float,
-    z: np.ndarray,
-    u: np.ndarray,
-    size: float,
+    scene: dict[str, Any], slider: Slider, t: float, z: np.ndarray, u: np.ndarray, size: float,
     until: float,
-) -> tuple[float, np.ndarray]:
+) -> tuple[float, np.ndarray]:  # fmt: skip
     """The same in (x, n, ln Q, t) over dτ = dt/Q, by BDF."""
     top = _top(scene)
 

@@ -55,14 +55,9 @@ def equal(
     2.220446049250313e-16
     """
     return Claim(
-        where,
-        statement,
-        text or f"{stated:.6g}",
-        computed,
-        abs(computed - stated),
-        allowed,
+        where, statement, text or f"{stated:.6g}", computed, abs(computed - stated), allowed,
         erratum,
-    )
+    )  # fmt: skip
 
 
 def more(where: str, statement: str, bound: float, computed: float) -> Claim:

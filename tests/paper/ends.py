@@ -28,12 +28,9 @@ THREE = np.array([1.02, 1.0, 0.98])  # next to one of them
 def claims(run: Simulate = simulate) -> list[Claim]:
     """All claims of this file, for the program's motions or others put to the test."""
     return [
-        *limit_ratios(run),
-        *last_speeds(run),
-        *last_curvature(run),
-        *endless_turning(run),
+        *limit_ratios(run), *last_speeds(run), *last_curvature(run), *endless_turning(run),
         *far_past(run),
-    ]
+    ]  # fmt: skip
 
 
 def friction_at_limit(delta: float) -> tuple[float, Resultants]:

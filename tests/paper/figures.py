@@ -242,14 +242,7 @@ def phase_portrait(delta: float = 1.0) -> Picture:
 
 
 FIGURES: dict[int, Callable[[], Picture]] = {
-    2: limit_angles,
-    3: paths,
-    4: stops_against_spin,
-    5: steel_puck,
-    6: rubber_puck,
-    7: patch_integrals,
-    8: pressure_reserves,
-    9: friction_along_and_spin,
-    10: friction_across,
+    2: limit_angles, 3: paths, 4: stops_against_spin, 5: steel_puck, 6: rubber_puck,
+    7: patch_integrals, 8: pressure_reserves, 9: friction_along_and_spin, 10: friction_across,
     11: phase_portrait,
-}
+}  # fmt: skip

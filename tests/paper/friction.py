@@ -51,13 +51,9 @@ TABLE_6_1: dict[str, tuple[tuple[str, Callable[[FloatArray], FloatArray]], ...]]
 def claims(friction: Friction = by_closed_form) -> list[Claim]:
     """All claims of this file, for the program's resultants or others put to the test."""
     return [
-        *table_6_1(friction),
-        *signs(friction),
-        *slip_angle_flow(friction),
-        *unique_limit(friction),
-        *reversal(friction),
-        *limit_values(),
-    ]
+        *table_6_1(friction), *signs(friction), *slip_angle_flow(friction), *unique_limit(friction),
+        *reversal(friction), *limit_values(),
+    ]  # fmt: skip
 
 
 def table_6_1(friction: Friction) -> list[Claim]:

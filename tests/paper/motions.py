@@ -23,15 +23,10 @@ def claims(run: Simulate = simulate) -> list[Claim]:
     """All claims of this file, for the program's motions or others put to the test."""
     motions = [launch(run, ratio, delta) for delta in DELTAS for ratio in RATIOS]
     return [
-        *equations(run),
-        *symmetry(run),
-        *quadrature(run),
-        *random_launches(run),
-        *spin_keeps_its_sign(motions),
-        *special_launches(run),
-        *simultaneous_stop(run),
+        *equations(run), *symmetry(run), *quadrature(run), *random_launches(run),
+        *spin_keeps_its_sign(motions), *special_launches(run), *simultaneous_stop(run),
         *bending(motions),
-    ]
+    ]  # fmt: skip
 
 
 def acceleration(
@@ -186,11 +181,9 @@ def quadrature(run: Simulate) -> list[Claim]:
             end = run((v0, 0.0), first * v0, delta=delta,
                       times=[time])  # fmt: skip
             worst = max(
-                worst,
-                abs(float(end.slip_speed[0]) - q),
-                abs(float(end.heading[0]) - psi),
+                worst, abs(float(end.slip_speed[0]) - q), abs(float(end.heading[0]) - psi),
                 abs(float(slip_ratio(end)[0]) - last),
-            )
+            )  # fmt: skip
     return [equal("Prop. 7", "quadratures give 9 motions (largest difference)", 0.0, worst, 1e-9)]
 
 

@@ -36,14 +36,9 @@ ANGLES = (("0", 0.0), ("pi/4", 0.25 * math.pi), ("pi/2", 0.5 * math.pi))
 def claims(integrals: Integrals = closed_form.integrals) -> list[Claim]:
     """All claims of this file, for the program's integrals or others put to the test."""
     return [
-        *table_4_6(integrals),
-        *positive(integrals),
-        *symmetries(integrals),
-        *negative(integrals),
-        *positive_pressure(integrals),
-        *critical_heights(integrals),
-        *pressure_laws(),
-    ]
+        *table_4_6(integrals), *positive(integrals), *symmetries(integrals), *negative(integrals),
+        *positive_pressure(integrals), *critical_heights(integrals), *pressure_laws(),
+    ]  # fmt: skip
 
 
 def table_4_6(integrals: Integrals) -> list[Claim]:
@@ -100,12 +95,10 @@ def by_definition(phi: float) -> PatchIntegrals:
         return np.asarray((integrand * element).sum())
 
     return PatchIntegrals(
-        a=mean(along) / alpha,
-        b=mean(beta * radius**2 * cosine**2) / beta,
-        c=mean(along * radius * sine) / beta,
-        d=mean(about * radius) / beta,
+        a=mean(along) / alpha, b=mean(beta * radius**2 * cosine**2) / beta,
+        c=mean(along * radius * sine) / beta, d=mean(about * radius) / beta,
         e=mean(about * radius**2 * sine) / alpha,
-    )
+    )  # fmt: skip
 
 
 def symmetries(integrals: Integrals) -> list[Claim]:
