@@ -20,6 +20,10 @@ class ContactError(InputError):
     """The state lies outside the law of contact asked for: lifted, tipping, or not determined."""
 
 
+class SpeedError(InputError):
+    """A slip is faster than a law of friction given by points goes."""
+
+
 class AccuracyError(InputError):
     """The accuracy asked for is out of reach of the chosen method.
 

@@ -133,7 +133,7 @@ def test_faster_than_the_table_is_refused_in_a_sentence(tmp_path: Path):
     scene = pt.Scene(pucks=[one, puck_at(0.1, 0)], ranges={"puck[0].launch.velocity[0]": [1, 3, 9]})
     ends = scene.sweep()
     assert [ends.meanings[end] for end in ends.end.tolist()] == [
-        "at rest", "at rest", "faster than a table of restitution goes",
+        "at rest", "at rest", "faster than a law goes",
     ]  # fmt: skip
     assert "run it alone" in ends.without_end()[0]
 

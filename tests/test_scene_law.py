@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from commands import invoke
 from scenes import simulate_scene
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 
 import puck_tables as pt
 from puck_tables import Scene
@@ -211,3 +211,17 @@ def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they
     tol = float(re.search(r"--tol\) of (\S+) or more", str(refused.value)).group(1))
     assert 1e-9 < tol < 1e-2
     assert simulate_scene({**scene, "tol": tol}).end == "at rest"
+
+
+@pytest.mark.parametrize("pressure", ["uniform", "hertz"])
+def test_a_law_holds_up_to_the_speed_that_it_says(pressure: str):
+    """It was refused there, "ends at 2 m/s"; a sweep said that the run may never stop."""
+    floor = pt.Floor(law=[[0.0, 0.3], [1.0, 0.2], [2.0, 0.1]])
+    scene = pt.Scene(pt.Puck(0.04, pressure=pressure), floor, pt.Launch((1.2, 1.6)))
+    brakes = pt.SpeedLaw([0.0, 1.0, 2.0], [0.3, 0.2, 0.1])
+    length = quad(lambda u: u / (9.80665 * float(brakes(u))), 0.0, 2.0, points=[1.0])[0]
+    run = scene.simulate()
+    assert abs(math.hypot(run.last["x"], run.last["y"]) - length) < 1e-6
+    ends = pt.Scene(scene.puck, floor, pt.Launch([(1.2, 1.6), (1.2, 1.7)])).sweep()
+    assert abs(ends.x[0] - run.last["x"]) < 1e-6
+    assert "faster than a law goes" in ends.without_end()[0]

@@ -40,7 +40,7 @@ DONE, TOO_FAST = 0, 1  # what a look-up ends as
 DEGREE = 5  # of the patches
 EDGE_POWER, CORNER_POWER = 2, 3  # of the grading of nodes at edges, and at corners of the law
 _TINY = 1e-300  # m/s
-_ROUNDING = 1.0 + 1e-12  # a speed so little above the last is the last
+_ROUNDING = 1.0 + 1e-8  # so little above the last speed the last piece goes on
 
 
 def packed(

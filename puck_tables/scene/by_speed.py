@@ -14,7 +14,7 @@ from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.law_moments import law_moments
 from puck_tables.contact.round_load import RoundLoad, load_of
 from puck_tables.contact.speed_law import SpeedLaw
-from puck_tables.errors import AccuracyError, InputError
+from puck_tables.errors import AccuracyError, SpeedError
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.floor_parts import frictions_on, has_laws_by_place, law_of
 from puck_tables.scene.ingredients import BySpeed
@@ -29,6 +29,8 @@ Points = tuple[tuple[float, float], ...]
 LAW_SHARE = 0.1  # of the error wanted: of the friction at any slip, in units of f N
 UNDER_LAW_ERROR = 1e-10  # of sums of a law along the contour of a base, in the same units
 NO_LAW = BySpeed(np.zeros(0), 0.0, 0.0, 1.0)
+# of the last speed of a law: so far its last piece goes on, so that who sets off as fast is within
+WITHIN = 1.0 + 4e-9
 FARTHER = 4.0  # a law by name holds at all speeds: its table goes on as needed
 _FLAT = 8.0  # times its own scale goes the first table of a launch from rest
 
@@ -53,8 +55,8 @@ def law_top(scene: SceneSpec, fastest: float) -> float:
     """
     tops = {name: _first_top(law, fastest) for name, law in laws_in(scene).items()}
     name, top = min(tops.items(), key=lambda one: one[1], default=("", math.inf))
-    if fastest > top:
-        raise InputError(
+    if fastest > WITHIN * top:
+        raise SpeedError(
             f"the rim slips at {fastest:.6g} m/s at the launch, faster than the friction law "
             f"{name} goes ({top:g} m/s): nothing is known beyond; give it more"
         )
@@ -87,12 +89,14 @@ def laws_in(scene: SceneSpec) -> dict[str, SpeedLaw | FrictionLaw]:
 
 
 def end_of_laws(scene: SceneSpec) -> tuple[float, str]:
-    """The slip at which the first of the laws that are points ends, m/s, and its name.
+    """The slip up to which the first of the laws that are points goes, m/s, and its name.
 
     Raises InputError as :func:`laws_in`.
     """
     ends = [
-        (law.top_speed, name) for name, law in laws_in(scene).items() if isinstance(law, SpeedLaw)
+        (WITHIN * law.top_speed, name)
+        for name, law in laws_in(scene).items()
+        if isinstance(law, SpeedLaw)
     ]
     return min(ends, default=(math.inf, ""))
 

@@ -23,7 +23,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 ENDS = (
     "at rest", "carried by the floor", "carried round", "time is up", "over the edge",
     "in a pocket", "tipped over", "step limit", "events crowd together",
-    "impacts without end", "unsolved", "faster than a table of restitution goes",
+    "impacts without end", "unsolved", "faster than a law goes",
     "no end found", "refused",
 )  # fmt: skip
 # their places: those of a run that has ended, up to LAST_END; of one that failed; and of one of

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import ContactError, InputError, PuckError
+from puck_tables.errors import ContactError, InputError, PuckError, SpeedError
 from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.run import (
@@ -228,6 +228,8 @@ class BoardCase:
                 now = energies_of(world, np.array([world.time]), world.state()[None])
                 if not residual(now, energy_scale(world._engine)) <= MISSED:
                     raise PuckError
+        except SpeedError:
+            return TOO_FAST
         except InputError:
             return NO_END
         except PuckError:

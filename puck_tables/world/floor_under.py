@@ -14,6 +14,7 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.base_balance import nearest_belt
+from puck_tables.scene.by_speed import WITHIN
 from puck_tables.scene.floor_map import (
     ACROSS_X,
     ACROSS_Y,
@@ -165,7 +166,7 @@ def law_goes_to(regions: Regions) -> float:
     law = regions.by_speed
     if law.normal == 0.0 or is_elliptic(law.table):
         return math.inf
-    return law.table[int(law.table[0])]
+    return WITHIN * law.table[int(law.table[0])]
 
 
 @inlined

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.errors import ContactError, InputError
+from puck_tables.errors import ContactError, InputError, SpeedError
 from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.by_speed import FARTHER, end_of_laws, laws_in
 from puck_tables.scene.equations import SIZE
@@ -311,7 +311,7 @@ def with_law_for(
         if engine.discs[i, INVERSE_MASS] == 0.0 or fastest < SURE * top:
             continue
         if top == end_of_laws(scene)[0]:
-            raise InputError(
+            raise SpeedError(
                 f"at {time:.6g} s the rim of {names[order[i]]} slips at {fastest:.6g} m/s, and the "
                 f"friction law {end_of_laws(scene)[1]} ends at {top:g} m/s: nothing is known "
                 "beyond; give it more speeds"
