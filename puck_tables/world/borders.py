@@ -35,10 +35,10 @@ from puck_tables.world.contact_search import (
     MOST_LOOKS,
     PATIENCE,
     SLOWEST,
+    accel_aside,
     arc_step,
     distance2,
     distance_left,
-    largest_accel,
     moment_there,
     once_round,
     safe_step,
@@ -189,7 +189,7 @@ def next_border(
     t = now
     for look in range(MOST_LOOKS):
         engine.counts[N_LOOKS] += 1
-        accel = largest_accel(kind, segment, disc, one, t)
+        accel = accel_aside(kind, segment, disc, one, t)
         gap, rate, step, others, nx, ny = _look(floor_map, number, how, radius, one, accel)
         if gap > distance_left(kind, segment, disc, one, t) * (1.0 + 1e-9):
             return math.inf
