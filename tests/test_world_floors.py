@@ -11,6 +11,7 @@ from boards import puck_at
 from floors_judge import Disc, Floor, Line, blade, pivot, play, rail
 
 import puck_tables as pt
+from puck_tables.world.engine_state import N_LOOKS
 
 STRIPS = pt.Strips((-0.05, 0.12), (0.2, 0.5, 0.1), 0.3)
 TIDE = [[0.0, 0.0, 0.0, 0.0], [0.2, 0.05, 0.02, 0.0], [0.5, -0.05, 0.1, 1e-4]]
@@ -175,3 +176,15 @@ def test_a_strike_that_a_rail_does_not_allow_is_refused():
         world.strike(0, (0.5, 0.5))
     world.strike(0, impulse=(0.0, 5.0))  # a push across it is the rail's
     assert world.state()[0, 4] == 0.0
+
+
+@pytest.mark.parametrize("aside", [0.0, 1e-9])
+def test_a_rim_that_slides_along_a_border_is_not_looked_at_without_end(aside: float):
+    """25 million looks, 5 s, where 200,000 do: how long it stays there was bounded by its speed."""
+    square = [[-0.2, -0.2], [0.2, -0.2], [0.2, 0.2], [-0.2, 0.2]]
+    launch = pt.Launch((0.0, -0.5), position=(aside - 0.25, 0.1))
+    puck = pt.Puck(0.05, friction=0.05, launch=launch)
+    world = pt.Scene(pucks=[puck], floor=pt.Floor(patches=[pt.Patch(0.5, corners=square)])).world()
+    world.advance(1.1)
+    assert abs(world.state()[0, 1] - (0.1 - 0.125 / (0.05 * 9.80665))) < 1e-8
+    assert world._engine.counts[N_LOOKS] < 400_000

@@ -35,10 +35,10 @@ from puck_tables.world.contact_search import (
     MOST_LOOKS,
     PATIENCE,
     SLOWEST,
-    accel_aside,
     arc_step,
     distance2,
     distance_left,
+    largest_accel,
     moment_there,
     once_round,
     safe_step,
@@ -48,6 +48,8 @@ from puck_tables.world.floor_under import floor_map_span, off_border
 from puck_tables.world.layout import INVERSE_MASS, LIES, RADIUS, ROUNDED, A
 from puck_tables.world.segment import GONE, corridor, moves_until, state_at
 from puck_tables.world.separation import stays_apart
+
+_UNFELT = 1e-10  # of a radius: whose rim has left by less may be looked at later
 
 # how far the rim is from the border, how fast that changes, for how long it surely is not there,
 # for how long it is at nothing but the nearest straight or convex piece, and the way to that; where
@@ -189,7 +191,7 @@ def next_border(
     t = now
     for look in range(MOST_LOOKS):
         engine.counts[N_LOOKS] += 1
-        accel = accel_aside(kind, segment, disc, one, t)
+        accel = largest_accel(kind, segment, disc, one, t)
         gap, rate, step, others, nx, ny = _look(floor_map, number, how, radius, one, accel)
         if gap > distance_left(kind, segment, disc, one, t) * (1.0 + 1e-9):
             return math.inf
@@ -197,6 +199,7 @@ def next_border(
         if gap <= rounded:
             if rate < -SLOWEST * engine.scale[0]:
                 return t
+            rounded = max(rounded, _UNFELT * radius) if how == OVERLAPS else rounded
             step = max(step, moment_there(rounded, rate, accel, t))
         if look >= PATIENCE and others > step:
             longer = stays_apart(

@@ -21,12 +21,11 @@ import math
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.forces import farthest, per_speed
-from puck_tables.scene.friction import SPIN, VX, VY, X, Y
+from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.engine_state import N_HELD, N_LOOKS, Engine
 from puck_tables.world.layout import (
     ARC,
     CORNER,
-    DELTA,
     DRAG,
     EDGE,
     EDGE_NUMBER,
@@ -125,6 +124,8 @@ def arc_step(gap: float, dx: float, dy: float, vx: float, vy: float, accel: floa
     if not speed + root > 0.0:
         return math.inf
     least = max(inwards, 2.0 * gap / (speed + root))  # whatever the direction
+    if size > 0.0:  # and by the parabola about the distance from the middle
+        least = max(least, safe_step(gap, -along / size, speed2 / size + accel))
     if speed2 > 0.0 and gap > 0.0:
         out = _to_circle(along, speed2, reach * reach - size * size)
         nearer = reach - 0.5 * accel * out * out
@@ -204,20 +205,6 @@ def largest_accel(
         speed = math.hypot(state[VX] - segment[DRIFT_X], state[VY] - segment[DRIFT_Y])
         return speed * per_speed(disc[DRAG:], speed)
     return segment[STRONGEST] if kind != LOOKED_UP or t < segment[UNTIL] else 0.0
-
-
-@inlined
-def accel_aside(
-    kind: int, segment: FloatArray, disc: FloatArray, state: FloatArray, t: float
-) -> float:
-    """The largest acceleration, of what slides straight on 0.
-
-    As it only gets slower, it nears what stands no faster than now.
-    """
-    straight = state[SPIN] == 0.0 or disc[DELTA] == 0.0
-    if kind == LOOKED_UP and straight and not drifts(segment):
-        return 0.0
-    return largest_accel(kind, segment, disc, state, t)
 
 
 @inlined

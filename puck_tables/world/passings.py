@@ -20,9 +20,9 @@ from puck_tables.scene.pucks_and_posts import Line
 from puck_tables.world.borders import to_round
 from puck_tables.world.contact_search import (
     SLOWEST,
-    accel_aside,
     arc_step,
     distance_left,
+    largest_accel,
     moment_there,
     once_round,
     safe_step,
@@ -210,7 +210,7 @@ def _next_passing(
         patience(1)
         state_at(kind, segment, disc, engine.lookups, engine.pieces, t, room, state)
         rounded = ROUNDED * (abs(state[X]) + abs(state[Y]) + radius + line[R])
-        accel = accel_aside(kind, segment, disc, state, t)
+        accel = largest_accel(kind, segment, disc, state, t)
         gap, rate, step = _look(line, part, side, radius, state, accel)
         if gap > distance_left(kind, segment, disc, state, t) * (1.0 + 1e-9):
             return math.inf
