@@ -71,8 +71,8 @@ def couple(
     from scipy.special import chdtrc
 
     groups: dict[tuple[object, ...], list[CoupledFit]] = {}
-    candidates = candidates_of(slides)
-    for x in candidates:
+    starts = candidates_of(slides)
+    for x in starts:
         for one in coupled(slides.problem, x, pieces, films, spec, lines):
             frames = tuple(film.time.size for film in one.problem.films)
             groups.setdefault((one.problem.names, one.pieces, frames), []).append(one)
@@ -97,7 +97,7 @@ def couple(
     rise, result = min(alike, key=lambda fit: (_unlikely(fit[1]), fit[0]))
     conditions = slides.x.size - result.x.size
     if chdtrc(max(conditions, 1), max(rise, 0.0)) < _BY_CHANCE:
-        return replace(slides, minima=tuple(candidates[:_TRIED])), (
+        return replace(slides, minima=tuple(starts[:_TRIED])), (
             "The slides are not joined at the impacts: one law of impact for all of them, with "
             f"states that match, would raise chi^2 by {rise:.4g} for {conditions} "
             f"condition{'' if conditions == 1 else 's'}"

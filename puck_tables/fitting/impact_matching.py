@@ -229,15 +229,13 @@ def coupled(
         impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
     sizes = {len(match_.kinks_of_slides) for match_ in matches}
     grip = all(abs(1.0 + match_.tangential) > _GRIPS for match_ in matches)
-    candidates = [spec.coupled(sizes, grip)]
+    specs = [spec.coupled(sizes, grip)]
     if grip and len(matches) > 1:
-        candidates += [
-            other for other in [spec.coupled(sizes, False)] if other.free != candidates[0].free
-        ]
+        specs += [other for other in [spec.coupled(sizes, False)] if other.free != specs[0].free]
     firsts = [slides[0] for slides in chains]
     launches, result = problem.launches(x)[firsts], []
-    for one in candidates:
-        both = Problem(
+    for one in specs:
+        shared = Problem(
             one, tuple(tracks), problem.noise, problem.tall,
             rests=tuple(problem.rests[n] for n in firsts) if problem.rests else (),
             walls=tuple(walls), impact_specs=tuple(impact_specs), known=problem.known,
@@ -247,8 +245,8 @@ def coupled(
         for name in one.free:
             low, high = one.limits(name)
             values[name] = min(max(values[name], low), high)
-        start = both.unknowns(values, launches, tuple(starts))
-        result.append(CoupledFit(both, start, tuple(home[n] for n in range(len(pieces)))))
+        start = shared.unknowns(values, launches, tuple(starts))
+        result.append(CoupledFit(shared, start, tuple(home[n] for n in range(len(pieces)))))
     return result
 
 

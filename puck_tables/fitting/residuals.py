@@ -192,10 +192,8 @@ OUT_OF_LEVEL = 0.1  # degrees of a table that nobody levelled with care
 _STEEP = 3.0  # degrees: nobody takes that for a level table
 _ALIKE = 6.0  # of χ²: forces that explain about as much
 _LAW = 0.2  # of a friction, by which it may change up to the fastest slip
-_RANK, _VISIBLE = (
-    1e-9,
-    2e-3,
-)  # of the largest slope; of what a force does: less is computed inexactly
+# of the largest slope; of what a force does: less is computed inexactly
+_RANK, _VISIBLE = 1e-9, 2e-3
 
 
 class SideForces(NamedTuple):

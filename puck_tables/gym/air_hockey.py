@@ -40,7 +40,7 @@ class AirHockey(TableGame):
 
     Each keeps to its half.  It earns the left player 1 as the puck falls into the right goal, −1 as
     it falls into the left one, and the game is over; 20 s at most.  The puck is served from the
-    middle at up to 1 m/s.  Obs are x, y of the own mallet, the other, and the puck, m, their vx,
+    middle at up to 1 m/s.  Seen are x, y of the own mallet, the other, and the puck, m, their vx,
     vy, m/s, and the spin of the puck, rad/s: by the left player, then the same by the right one,
     who sees the table, and moves, as if it were the left one.
     """

@@ -194,7 +194,7 @@ class Carrom(ShotGame):
 
     An action is the place of the striker on its base line, ±0.21 m, its direction, ±80° to the line
     across, and its speed, 0.2 to 6 m/s; where a man is in the way, the nearest free place is taken.
-    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Obs are x, y, m,
+    A white man earns 1, a black one −1, the queen 3, the striker in a pocket −1.  Seen are x, y, m,
     of all men and 1 for each on the board, then the share of shots made.
     """
 
@@ -246,7 +246,7 @@ class Crokinole(ShotGame):
 
     An action is the place on the line of the own quarter, ±45°, the direction, ±30° to the middle,
     and the speed, 0.2 to 3 m/s.  Points are those of the own discs less those of the others: 20 in
-    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Obs are
+    the hole, 15, 10 and 5 in the rings, all of a disc within; nobody has to hit anything.  Seen are
     x, y, m, of all discs, own first, and 1 for each on the board, then the share of shots made.
     """
 
@@ -279,11 +279,11 @@ class Crokinole(ShotGame):
         for k in range(self.limit):
             tables.worlds.remove(k, boards=boards)
         for k, (low, high) in enumerate(((0.03, 0.07), (0.13, 0.18), (0.21, 0.24))):
-            far, angle = (
+            far, turn = (
                 rng.uniform(low, high, len(boards)),
                 rng.uniform(-np.pi, np.pi, len(boards)),
             )
-            tables.worlds.place(self.limit + k, sent(far, angle), boards=boards)
+            tables.worlds.place(self.limit + k, sent(far, turn), boards=boards)
 
     def shoot(
         self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator

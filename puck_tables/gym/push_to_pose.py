@@ -20,7 +20,7 @@ class PushToPose(TableGame):
 
     An action is vx, vy of the finger, of 0.25 m/s each, for 0.05 s; at most 200 of them.  Each
     earns what it brings the disc nearer, m, angles times the radius, and 1 more as it arrives, by
-    5 mm and 5°: then the game is over.  Obs are x, y, m, of the disc and of the finger, and cosine
+    5 mm and 5°: then the game is over.  Seen are x, y, m, of the disc and of the finger, and cosine
     and sine of the angle.
     """
 

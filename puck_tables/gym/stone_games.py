@@ -106,7 +106,7 @@ class Curling(StoneGame):
     the tee, and the spin, ±2 rad/s.  The others draw to the tee, with errors of 0.02 m/s and 0.15°
     (standard deviations).  The score of the end is earned with its last stone: one for each stone
     in the house that is nearer to the tee than all of the other side.  Stones short of the hog line
-    are taken off.  Obs are x, y, m, from the tee, of the stones that were thrown, own first, and 1
+    are taken off.  Seen are x, y, m, from the tee, of the stones that were thrown, own first, and 1
     for each in play, then the share of stones thrown.
     """
 
@@ -166,7 +166,7 @@ class Shuffleboard(StoneGame):
     An action is the place across, ±0.2 m, the speed, 1.2 to 2.4 m/s, the direction, ±2°, and the
     spin, ±10 rad/s.  The others send theirs for the end, with an error of 0.05 m/s.  The weights of
     one side that are beyond all of the other count: 3 in the last 6 in, 2 in the 6 in before, 1 up
-    to 6 ft before the end.  Obs are x, y, m, of the weights that were sent, own first, and 1 for
+    to 6 ft before the end.  Seen are x, y, m, of the weights that were sent, own first, and 1 for
     each on the table, then the share of weights sent.
     """
 

@@ -23,9 +23,8 @@ _canonical: Any = canonicalize_cfg
 _options: Any = ConfigStack
 _find_type: Any = _Called.get_call_type
 _list_all: Any = _AfterStep.run
-_signatures: dict[
-    Any, tuple[Any, Any]
-] = {}  # by function, types and options: signature, what lowers it
+# by function, types and options: signature, what lowers it
+_signatures: dict[Any, tuple[Any, Any]] = {}
 
 
 def _call_type(function: Any, context: Any, args: Any, named: Any) -> Any:

@@ -236,9 +236,7 @@ def _interval(
     marks = base[room_of(base) + int(base[ROWS]) + _MARKS :]
     off = max(low - centre, centre - high, 0.0)
     cubed = math.sqrt(off * off + gap * gap) < _CLOSE * (high - low)
-    for sense in range(
-        2 if cubed else 1
-    ):  # up from the angle of C and down from it, if it is close
+    for sense in range(2 if cubed else 1):  # up from the angle of C, and down if it is close
         first, begin, end, sign = low, 0.0, high - low, 1.0
         if cubed:
             first, begin, end = centre, low - centre, high - centre

@@ -45,9 +45,7 @@ _ITERATIONS = 12  # of Newton's method: beyond, the step is shortened
 _RELATIVE = 1e-3  # of the slip: no step is worse
 _ROUNDING = 1e-12  # of the scales: what no iteration makes better, and
 _NOISE = 1e-14  # of what friction alone would do in the step
-_OF_LENGTH = (
-    1e-14  # of a step's way: what its places and energies are known to, however short it is
-)
+_LENGTH = 1e-14  # of a step's length: its places and energies are known to that, however short
 _SURE = 1e-6  # of it: how well the stages are known
 
 
@@ -222,7 +220,7 @@ def _error(
             b[i - VX] = defect
         else:
             length = abs(work[0, i]) / scale[i] + left / scale[X]
-            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _OF_LENGTH * length))
+            largest = max(largest, h * (abs(defect) / _MU / scale[i] - _LENGTH * length))
     _solve(matrix, order, b)
     for i in range(_STIFF):
         size = scale[VX + i]

@@ -134,10 +134,8 @@ def _find_rates(room: FloatArray) -> None:
     """How fast Q, u and the heading change where the states are."""
     for n in range(PART):
         is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
-        fixed, result = (
-            rows_of(room, FIXED, FIXED_ROWS, n),
-            rows_of(room, AT_PLACE, SECTION_WIDTH, n),
-        )
+        fixed = rows_of(room, FIXED, FIXED_ROWS, n)
+        result = rows_of(room, AT_PLACE, SECTION_WIDTH, n)
         left, delta = row_of(room, LEFT, n), row_of(room, DELTA, n)
         small, large = 0.5 * share, 1.0 - 0.5 * share
         norm = 1.0 / math.sqrt(small * small + large * large)

@@ -64,10 +64,8 @@ def contenders() -> Iterator[Contender]:
             if not one.fixed:
                 words, cost = f"local={one.local:g}", max(1.0, 10.0 - 3.0 * np.log10(one.local))
             items, most = (int(np.clip(2000.0 / cost, 8.0, end)) for end in (1000.0, 100.0))
-            integrated, recorded = (
-                partial(_integrated, one, columns),
-                partial(_recorded, one, columns),
-            )
+            integrated = partial(_integrated, one, columns)
+            recorded = partial(_recorded, one, columns)
             yield Contender(stops, scheme.name, words, integrated, items)
             yield Contender(trajectories, scheme.name, words, recorded, most)
     yield from scripts(easy)

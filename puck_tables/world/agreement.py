@@ -297,10 +297,10 @@ def _strange_rims(scene: SceneSpec) -> Iterator[str]:
                 "it out"
             )
         for side in ("puck", "partner"):
-            kinds, may = getattr(rim, side), (called_so if side == "puck" else known - {""})
-            if kinds not in may:
+            called, may = getattr(rim, side), (called_so if side == "puck" else known - {""})
+            if called not in may:
                 more = "" if side == "puck" else ", or a cushion, 'wall 0' or all, 'wall'"
                 yield (
-                    f"rim[{number}].{side} = {kinds!r}: must be the name of a puck or the colour "
-                    f"of pucks{more}{meant(kinds, sorted(may))}"
+                    f"rim[{number}].{side} = {called!r}: must be the name of a puck or the colour "
+                    f"of pucks{more}{meant(called, sorted(may))}"
                 )

@@ -274,11 +274,11 @@ def _searches(
     fastest = None if max_speed is None else positive("max_speed", max_speed, "m/s")
     widest = None if max_spin is None else positive("max_spin", max_spin, "rad/s")
     if speed is not None:
-        speeds = positive("speed", speed, "m/s")
-        if fastest is not None and speeds > fastest:
-            raise InputError(f"speed = {speeds:g} m/s is above max_speed = {fastest:g} m/s")
-        widest = PLENTY_SPIN * speeds / puck.radius if widest is None else widest
-        return [Search(None, speeds, -widest, widest)]
+        chosen = positive("speed", speed, "m/s")
+        if fastest is not None and chosen > fastest:
+            raise InputError(f"speed = {chosen:g} m/s is above max_speed = {fastest:g} m/s")
+        widest = PLENTY_SPIN * chosen / puck.radius if widest is None else widest
+        return [Search(None, chosen, -widest, widest)]
     spins = np.atleast_1d(finite_array("spin", puck.launch.spin if spin is None else spin, "rad/s"))
     if spins.ndim != 1 or not 1 <= spins.size <= MOST_SPINS:
         raise InputError(f"spin must be a number or a list of at most {MOST_SPINS}")

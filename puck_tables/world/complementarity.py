@@ -64,21 +64,21 @@ def _write_variables(buffer: GroupBuffer, scales: Scales, modes: IntArray) -> in
     """
     size, row = 0, 0
     for c in range(modes.shape[0]):
-        sight = buffer.kinematics[c]
-        rough = sight[GRIP] > 0.0
+        contact = buffer.kinematics[c]
+        rough = contact[GRIP] > 0.0
         if buffer.matrix[row, row] > 0.0:  # else between two that cannot move
             v = buffer.variables[size]
             v[FORCE_N], v[FORCE_T], v[RATE_N], v[RATE_T], v[CAP] = 1.0, 0.0, 1.0, 0.0, -1.0
             buffer.first[size] = row
             size += 1
-            slip = sight[SLIP]
+            slip = contact[SLIP]
             if rough and abs(slip) > 2.0 * SMOOTH_SLIP * scales.speed:
-                v[FORCE_N], v[FORCE_T] = slide_shares(sight[GRIP], 1 if slip > 0.0 else -1)
+                v[FORCE_N], v[FORCE_T] = slide_shares(contact[GRIP], 1 if slip > 0.0 else -1)
             elif rough:
                 for side in range(3):
                     v, sign = buffer.variables[size], 1.0 - 2.0 * side if side < 2 else 0.0
                     v[FORCE_N], v[FORCE_T], v[RATE_N], v[RATE_T] = 0.0, sign, 0.0, sign
-                    v[CAP] = min(sight[GRIP], _STEEPEST) if side == 2 else -1.0
+                    v[CAP] = min(contact[GRIP], _STEEPEST) if side == 2 else -1.0
                     buffer.first[size] = row
                     size += 1
         row += 2 if rough else 1
@@ -225,8 +225,8 @@ def modes_of_lemke(buffer: GroupBuffer, modes: IntArray, scales: Scales) -> bool
         return False
     i, row = 0, 0
     for c in range(modes.shape[0]):
-        sight = buffer.kinematics[c]
-        rough, slip = sight[GRIP] > 0.0, sight[SLIP]
+        contact = buffer.kinematics[c]
+        rough, slip = contact[GRIP] > 0.0, contact[SLIP]
         moves = i < size and buffer.first[i] == row
         row += 2 if rough else 1
         if not moves:
@@ -247,24 +247,24 @@ def modes_of_lemke(buffer: GroupBuffer, modes: IntArray, scales: Scales) -> bool
 
 
 @inlined
-def rim_mode(sight: FloatArray, speed: float) -> int:
+def rim_mode(contact: FloatArray, speed: float) -> int:
     """How the rims slip, as seen; rims without friction slide."""
-    slip = sight[SLIP]
-    if abs(slip) <= 2.0 * SMOOTH_SLIP * speed and sight[GRIP] > 0.0:
+    slip = contact[SLIP]
+    if abs(slip) <= 2.0 * SMOOTH_SLIP * speed and contact[GRIP] > 0.0:
         return STICKS
     return 1 if slip >= 0.0 else -1
 
 
 @inlined
-def most(sight: FloatArray, push: float) -> float:
+def most(contact: FloatArray, push: float) -> float:
     """The most that the rims bear where they are pressed."""
-    return math.inf if sight[GRIP] == math.inf else sight[GRIP] * max(push, 0.0)
+    return math.inf if contact[GRIP] == math.inf else contact[GRIP] * max(push, 0.0)
 
 
 @inlined
-def load_of(sight: FloatArray, mode: int, push: float, rim: float) -> float:
+def load_of(contact: FloatArray, mode: int, push: float, rim: float) -> float:
     """What presses a contact: λ, or on rims without bound that slide, τ against the slip."""
-    return mode * rim if mode != STICKS and sight[GRIP] == math.inf else push
+    return mode * rim if mode != STICKS and contact[GRIP] == math.inf else push
 
 
 @inlined
@@ -278,25 +278,25 @@ def better_mode(buffer: GroupBuffer, c: int, mode: int, scales: Scales, may_slid
     slack = 0.5 * LEVEL * scales.rate
     if soft == 0.0:  # between two that cannot move nothing is known, if they do not part
         return APART if gap > slack else mode
-    sight, push, rim = buffer.kinematics[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
+    contact, push, rim = buffer.kinematics[c], buffer.pushes[c, 0], buffer.pushes[c, 1]
     if mode == APART:
         if gap >= -slack:
             return APART
-        mode = rim_mode(sight, scales.speed)
-        if mode == STICKS and abs(slip) * soft > most(sight, -gap) * rolls:  # as it would alone
+        mode = rim_mode(contact, scales.speed)
+        if mode == STICKS and abs(slip) * soft > most(contact, -gap) * rolls:  # as it would alone
             mode = 1 if slip > 0.0 else -1
         return mode
-    if load_of(sight, mode, push, rim) * soft < -slack:
-        if may_slide and mode == STICKS and sight[GRIP] == math.inf and rim != 0.0:
+    if load_of(contact, mode, push, rim) * soft < -slack:
+        if may_slide and mode == STICKS and contact[GRIP] == math.inf and rim != 0.0:
             return 1 if rim > 0.0 else -1
         return APART
-    if sight[GRIP] == 0.0:
+    if contact[GRIP] == 0.0:
         return mode
     if mode == STICKS:
-        if (abs(rim) - most(sight, push)) * rolls > slack:
+        if (abs(rim) - most(contact, push)) * rolls > slack:
             return 1 if rim > 0.0 else -1
         return STICKS
-    begins = abs(sight[SLIP]) <= 2.0 * SMOOTH_SLIP * scales.speed
+    begins = abs(contact[SLIP]) <= 2.0 * SMOOTH_SLIP * scales.speed
     return STICKS if begins and slip * mode < -slack else mode
 
 

@@ -146,10 +146,8 @@ def regions_of(
     floor_map, several = NO_FLOOR_MAP, may_be_mixed(scene)
     if several:
         most = loads.reshape(-1, len(pucks)).max(axis=0)
-        loads, limits = (
-            np.concatenate([loads, most]),
-            np.concatenate([limits, limits[: len(pucks)]]),
-        )
+        loads = np.concatenate([loads, most])
+        limits = np.concatenate([limits, limits[: len(pucks)]])
     if several or summed.any():
         floor_map = _grounds(scene, pucks, np.ones(len(pucks), np.bool_))
     is_summed = np.concatenate([summed, np.ones(count - len(places), np.bool_)])

@@ -221,7 +221,7 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
     """What is seen of contacts ``pairs`` (c, 2) at the states y (m, 6), into ``out`` (≥ c, 11)."""
     for c in range(pairs.shape[0]):
         patience(1)
-        one, other, sight = pairs[c, 0], pairs[c, 1], out[c]
+        one, other, contact = pairs[c, 0], pairs[c, 1], out[c]
         i = members[one]
         radius = group.discs[i, RADIUS]
         if other >= 0:
@@ -229,18 +229,22 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
             far = group.discs[j, RADIUS]
             dx, dy = y[other, X] - y[one, X], y[other, Y] - y[one, Y]
             distance = math.hypot(dx, dy)
-            sight[NX], sight[NY], sight[CURVATURE] = dx / distance, dy / distance, 1.0 / distance
-            sight[GAP], sight[FAR_ARM], sight[TO_END] = distance - radius - far, far, math.inf
+            contact[NX], contact[NY], contact[CURVATURE] = (
+                dx / distance,
+                dy / distance,
+                1.0 / distance,
+            )
+            contact[GAP], contact[FAR_ARM], contact[TO_END] = distance - radius - far, far, math.inf
             vx, vy = y[one, VX] - y[other, VX], y[one, VY] - y[other, VY]
             turning = radius * y[one, SPIN] + far * y[other, SPIN]
         else:
             j, obstacle, at_x, at_y = other, group.obstacles[-1 - other], y[one, X], y[one, Y]
-            sight[GAP], sight[NX], sight[NY], _ = normal_to(obstacle, radius, at_x, at_y, 0.0)
-            sight[CURVATURE] = curvature(obstacle, radius, sight[GAP])
-            sight[FAR_ARM], sight[TO_END] = 0.0, to_end(obstacle, radius, at_x, at_y)
+            contact[GAP], contact[NX], contact[NY], _ = normal_to(obstacle, radius, at_x, at_y, 0.0)
+            contact[CURVATURE] = curvature(obstacle, radius, contact[GAP])
+            contact[FAR_ARM], contact[TO_END] = 0.0, to_end(obstacle, radius, at_x, at_y)
             vx, vy, turning = y[one, VX], y[one, VY], radius * y[one, SPIN]
-        sight[ARM] = radius
-        sight[APPROACH], sight[ALONG] = along_normal(vx, vy, 0.0, sight[NX], sight[NY])
-        sight[SLIP] = sight[ALONG] + turning
+        contact[ARM] = radius
+        contact[APPROACH], contact[ALONG] = along_normal(vx, vy, 0.0, contact[NX], contact[NY])
+        contact[SLIP] = contact[ALONG] + turning
         tangential, friction = along_of_pair(group.rims, group.discs, group.obstacles, i, j)
-        sight[GRIP] = friction if tangential > -1.0 else 0.0  # −1: smooth
+        contact[GRIP] = friction if tangential > -1.0 else 0.0  # −1: smooth

@@ -310,12 +310,9 @@ def _wanted_of_floor(
     fx, fy, torque = force_of_contacts(buffer, count, place)
     px, py, pull = _pull_on(group, members, place, buffer)
     light, turns = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
-    ax, ay, turn = (
-        buffer.floor_accels[place, 0],
-        buffer.floor_accels[place, 1],
-        buffer.floor_accels[place, 2],
-    )
-    return fx + (px - ax) / light, fy + (py - ay) / light, torque + (pull - turn) / turns
+    floor = buffer.floor_accels[place]
+    fx, fy = fx + (px - floor[0]) / light, fy + (py - floor[1]) / light
+    return fx, fy, torque + (pull - floor[2]) / turns
 
 
 @inlined

@@ -146,20 +146,20 @@ def as_forces(
             continue
         if acting == buffer.pairs.shape[0]:
             return -1
-        sight = buffer.kinematics[acting]
-        for column in range(sight.shape[0]):
-            sight[column] = 0.0
-        sight[SIGHT_NX], sight[SIGHT_NY] = row[NX], row[NY]
-        sight[GRIP] = 0.0  # β = −1: smooth
+        contact = buffer.kinematics[acting]
+        for column in range(contact.shape[0]):
+            contact[column] = 0.0
+        contact[SIGHT_NX], contact[SIGHT_NY] = row[NX], row[NY]
+        contact[GRIP] = 0.0  # β = −1: smooth
         if row[BETA] > -1.0:
-            sight[GRIP] = row[MU] * (1.0 + row[E]) / (1.0 + row[BETA])
+            contact[GRIP] = row[MU] * (1.0 + row[E]) / (1.0 + row[BETA])
         for m in range(2):
             i = contacts[n, m]
             buffer.pairs[acting, m] = i
             if i < 0:
                 continue
             disc = engine.discs[i]
-            sight[ARM + m] = disc[RADIUS]
+            contact[ARM + m] = disc[RADIUS]
             if buffer.inverse[i, 0] > 0.0 or disc[INVERSE_MASS] == 0.0:
                 continue
             buffer.inverse[i, 0], buffer.inverse[i, 1] = disc[INVERSE_MASS], disc[INVERSE_INERTIA]

@@ -79,11 +79,11 @@ def stop_slips(buffer: GroupBuffer, modes: IntArray, y: FloatArray) -> float:
 
 
 @inlined
-def _row_of(row: FloatArray, sight: FloatArray, along: bool) -> None:
+def _row_of(row: FloatArray, contact: FloatArray, along: bool) -> None:
     """What a unit force along the normal, or along the rims, is on both discs."""
-    ex, ey = (-sight[NY], sight[NX]) if along else (sight[NX], sight[NY])
+    ex, ey = (-contact[NY], contact[NX]) if along else (contact[NX], contact[NY])
     row[0], row[1], row[3], row[4] = ex, ey, -ex, -ey
-    row[2], row[5] = (sight[ARM], sight[FAR_ARM]) if along else (0.0, 0.0)
+    row[2], row[5] = (contact[ARM], contact[FAR_ARM]) if along else (0.0, 0.0)
 
 
 @inlined
@@ -114,20 +114,23 @@ def constrain(buffer: GroupBuffer, modes: IntArray, sticks: bool, slides: bool) 
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        sight = buffer.kinematics[c]
+        contact = buffer.kinematics[c]
         for along in range(2):
-            if along == 1 and not (sticks and modes[c] == STICKS and sight[GRIP] > 0.0):
+            if along == 1 and not (sticks and modes[c] == STICKS and contact[GRIP] > 0.0):
                 continue
             for side in range(2):
                 buffer.owners[count, side] = buffer.pairs[c, side]
-            _row_of(buffer.rows[count], sight, along == 1)
-            _row_of(buffer.columns[count], sight, along == 1)
+            _row_of(buffer.rows[count], contact, along == 1)
+            _row_of(buffer.columns[count], contact, along == 1)
             if slides and along == 0 and modes[c] != STICKS:
-                across, rim = slide_shares(sight[GRIP], modes[c])
+                across, rim = slide_shares(contact[GRIP], modes[c])
                 column = buffer.columns[count]
-                ex, ey = across * sight[NX] - rim * sight[NY], across * sight[NY] + rim * sight[NX]
+                ex, ey = (
+                    across * contact[NX] - rim * contact[NY],
+                    across * contact[NY] + rim * contact[NX],
+                )
                 column[0], column[1], column[3], column[4] = ex, ey, -ex, -ey
-                column[2], column[5] = rim * sight[ARM], rim * sight[FAR_ARM]
+                column[2], column[5] = rim * contact[ARM], rim * contact[FAR_ARM]
             count += 1
     for tie in range(buffer.number[0]):
         buffer.owners[count, 0], buffer.owners[count, 1] = buffer.led_places[tie], -1
@@ -267,15 +270,15 @@ def right_hand_side(buffer: GroupBuffer, modes: IntArray) -> None:
     for c in range(modes.shape[0]):
         if modes[c] == APART:
             continue
-        sight = buffer.kinematics[c]
-        accel = sight[CURVATURE] * sight[ALONG]
+        contact = buffer.kinematics[c]
+        accel = contact[CURVATURE] * contact[ALONG]
         buffer.vectors[RIGHT, number] = (
-            times_row(buffer, number, buffer.own, 0) - accel * sight[ALONG]
+            times_row(buffer, number, buffer.own, 0) - accel * contact[ALONG]
         )
         number += 1
-        if modes[c] == STICKS and sight[GRIP] > 0.0:
+        if modes[c] == STICKS and contact[GRIP] > 0.0:
             buffer.vectors[RIGHT, number] = (
-                times_row(buffer, number, buffer.own, 0) + accel * sight[APPROACH]
+                times_row(buffer, number, buffer.own, 0) + accel * contact[APPROACH]
             )
             number += 1
     for tie in range(buffer.number[0]):
@@ -317,20 +320,20 @@ def push_and_move(buffer: GroupBuffer, modes: IntArray, members: int) -> float:
 @inlined
 def leads(buffer: GroupBuffer, c: int) -> tuple[float, float, float, float]:
     """Of a contact: gap″, u′, and how much a unit of λ and of τ changes them."""
-    sight = buffer.kinematics[c]
+    contact = buffer.kinematics[c]
     across, along, soft, rolls = 0.0, 0.0, 0.0, 0.0
     for side in range(2):
         place = buffer.pairs[c, side]
         if place < 0:
             continue
-        sign, arm = 1.0 - 2.0 * side, sight[ARM + side]
+        sign, arm = 1.0 - 2.0 * side, contact[ARM + side]
         ax, ay, aw = buffer.rates[place, 0], buffer.rates[place, 1], buffer.rates[place, 2]
-        across += sign * (ax * sight[NX] + ay * sight[NY])
-        along += sign * (ay * sight[NX] - ax * sight[NY]) + arm * aw
+        across += sign * (ax * contact[NX] + ay * contact[NY])
+        along += sign * (ay * contact[NX] - ax * contact[NY]) + arm * aw
         soft += buffer.inverse[place, 0]
         rolls += buffer.inverse[place, 0] + arm * arm * buffer.inverse[place, 1]
-    accel = sight[CURVATURE] * sight[ALONG]
-    return accel * sight[ALONG] - across, along + accel * sight[APPROACH], soft, rolls
+    accel = contact[CURVATURE] * contact[ALONG]
+    return accel * contact[ALONG] - across, along + accel * contact[APPROACH], soft, rolls
 
 
 @inlined

@@ -226,7 +226,7 @@ def _described(engine: g.Engine) -> list[Rest]:
     # none of what is driven, or what nothing can hold
     held = (rows[:, INVERSE_MASS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")
-    intervals: list[tuple[int, float, str]] = []
+    rests: list[tuple[int, float, str]] = []
     disc, rested = -1, True
     for n in own[held[discs[own]]].tolist():
         if discs[n] != disc:
@@ -235,20 +235,18 @@ def _described(engine: g.Engine) -> list[Rest]:
             continue
         first, last = resting[n]
         if first and not rested:
-            intervals.append((n, starts[n], "stick"))
+            rests.append((n, starts[n], "stick"))
         if first and moves[n] and kinds[n] == PATH and starts[n] > 0.0:
-            intervals.append((n, starts[n], "slip"))
+            rests.append((n, starts[n], "slip"))
         rested = last
         if last and moves[n]:
-            intervals.append((n, min(stops[n], ends[n]), "stick"))
-    at, times = (
-        np.array([n for n, *_ in intervals], np.int64),
-        np.array([one[1] for one in intervals]),
-    )
-    places = states_on(engine, at, times)[:, [X, Y]].tolist() if intervals else []
+            rests.append((n, min(stops[n], ends[n]), "stick"))
+    at = np.array([n for n, *_ in rests], np.int64)
+    times = np.array([time for _, time, _ in rests])
+    places = states_on(engine, at, times)[:, [X, Y]].tolist() if rests else []
     return [
         (float(time), what, int(discs[n]), x, y)
-        for (n, time, what), (x, y) in zip(intervals, places, strict=True)
+        for (n, time, what), (x, y) in zip(rests, places, strict=True)
     ]
 
 

@@ -77,23 +77,23 @@ _TURN = 1.5  # and of that in which friction turns it; three times as long steps
 def watch(buffer: GroupBuffer, modes: IntArray, scales: Scales, end: bool) -> None:
     """What is watched at the start or end of a step, from kinematics and pushes."""
     for c in range(modes.shape[0]):
-        seen, sight = buffer.watched[1 if end else 0, c], buffer.kinematics[c]
+        seen, contact = buffer.watched[1 if end else 0, c], buffer.kinematics[c]
         for i in range(WATCHES):
             seen[i] = math.inf
         if modes[c] == APART:
             continue
-        seen[RUNS_OFF - PARTS] = sight[TO_END]
+        seen[RUNS_OFF - PARTS] = contact[TO_END]
         _, _, soft, rolls = leads(buffer, c)
         if soft == 0.0:
             continue
         push, rim = buffer.pushes[c, 0], buffer.pushes[c, 1]
-        seen[0] = load_of(sight, modes[c], push, rim) * soft + LEVEL * scales.rate
-        if sight[GRIP] == 0.0:
+        seen[0] = load_of(contact, modes[c], push, rim) * soft + LEVEL * scales.rate
+        if contact[GRIP] == 0.0:
             continue
         if modes[c] != STICKS:
-            seen[RIM_STOPS - PARTS] = modes[c] * sight[SLIP] + SMOOTH_SLIP * scales.speed
-        elif sight[GRIP] < math.inf:
-            left = (most(sight, push) - abs(rim)) * rolls
+            seen[RIM_STOPS - PARTS] = modes[c] * contact[SLIP] + SMOOTH_SLIP * scales.speed
+        elif contact[GRIP] < math.inf:
+            left = (most(contact, push) - abs(rim)) * rolls
             seen[RIM_GIVES - PARTS] = left + LEVEL * scales.rate
 
 

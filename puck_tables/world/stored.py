@@ -185,11 +185,8 @@ def _put_away(engine: Engine, bench: Bench, store: Slots, slot: int) -> bool:
     for n in range(kept):
         event, row = engine.events[events - kept + n], bench.tail[n]
         row[0], row[1], row[2], row[3] = event[TIME], event[WHAT], event[WHO], event[PARTNER]
-    engine.counts[N_EVENTS], engine.counts[N_HISTORY], engine.counts[N_WORK_ROWS] = (
-        kept,
-        2 * count,
-        0,
-    )
+    engine.counts[N_EVENTS], engine.counts[N_HISTORY] = kept, 2 * count
+    engine.counts[N_WORK_ROWS] = 0
     store.due[slot] = _next_due(engine, bench.seen)
     for column in range(bench.numbers.size):
         store.numbers[slot, column] = bench.numbers[column]

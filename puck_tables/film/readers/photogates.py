@@ -28,17 +28,17 @@ def _film(path: str | Path, head: bytes) -> Film:
     """The slides in a table of two photogates, along a line."""
     form = text_form_of(path, head)
     names = header_of(form, bool)[-1]
-    places = _columns(names)
-    missing = [name for name in ("gate 2", "between", "flag", "distance") if name not in places]
+    numbers = _columns(names)
+    missing = [name for name in ("gate 2", "between", "flag", "distance") if name not in numbers]
     if missing:
         raise InputError(
             f"{path} is of photogates and has no column of {' and '.join(missing)}: it needs the "
             "times in gate 1, in gate 2 and between the gates, and columns 'flag [cm]', the width "
             "of what passes them, and 'distance [cm]', the way between them"
         )
-    columns, _ = read_columns(path, form, list(places.values()), [])
+    columns, _ = read_columns(path, form, list(numbers.values()), [])
     values = {}
-    for name, n in places.items():
+    for name, n in numbers.items():
         kind = "length" if name in _SIZES else "time"
         unit = unit_word(parted(names[n])[1], kind)
         if not unit and kind == "length":
@@ -50,11 +50,11 @@ def _film(path: str | Path, head: bytes) -> Film:
         "table of photogates", [], "m", notes=["places along one line, the edges of a flag"]
     )
     rows = [values[name] for name in ("gate 1", "gate 2", "between", "flag", "distance")]
-    for n, (one, two, between, width, direction) in enumerate(
+    for n, (one, two, between, width, distance) in enumerate(
         np.stack(rows, axis=1).tolist(), start=1
     ):
         if np.isfinite([one, two, between]).all():
-            place = np.array([0.0, width, direction, direction + width])
+            place = np.array([0.0, width, distance, distance + width])
             marks = {"": np.stack([place, 0.0 * place], axis=1)}
             time = np.array([0.0, one, between, between + two])
             film.bodies.append(TrackedBody(f"slide {n}", marks, time=time))
