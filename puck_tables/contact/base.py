@@ -15,13 +15,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import (
-    FloatArray,
-    finite_array,
-    instance,
-    listed,
-    positive,
-)
+from puck_tables._core.arrays import FloatArray, finite_array, instance, listed, positive
 from puck_tables._core.own_folder import say
 from puck_tables.contact.outlines import crossing, inside, overlap
 from puck_tables.errors import ContactError, InputError

@@ -34,7 +34,7 @@ from puck_tables.world import setting_off
 from puck_tables.world.bench import LACKS_PIECES, LED, LET_GO, REPORT_COLUMNS
 from puck_tables.world.engine_state import EVENTS
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS
-from puck_tables.world.layout import INVERSE_MASS, RADIUS
+from puck_tables.world.layout import INV_MASS, RADIUS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.segment import GONE
 from puck_tables.world.shipped import (
@@ -115,7 +115,7 @@ def lines_of(board: Worlds) -> list[str]:
 def discs_of(board: Worlds) -> tuple[FloatArray, Any]:
     """The radius of each puck, m, and whether it is driven."""
     discs = board._first._engine.discs[board._place]
-    return discs[:, RADIUS], discs[:, INVERSE_MASS] == 0.0
+    return discs[:, RADIUS], discs[:, INV_MASS] == 0.0
 
 
 def objects(folder: str, triple: str, ship: Shipped, known: list[Any], symbol: str) -> list[str]:

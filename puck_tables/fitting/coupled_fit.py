@@ -37,7 +37,7 @@ _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not tha
 _STEP = 1e-6  # of an unknown, in differences; of friction: a rim that is as close to it slides
 _SAME = 1e-9  # of the size of coordinates: a point lies on a wall
 _WALK = ((8, 16), (12, 8), (25, 4))  # steps from each start, and how many then go on
-_DEARER = 15.0  # what other minima may cost more
+_WORSE = 15.0  # what other minima may cost more
 _TRIED = 12  # ways of slides that are not joined, to see whether they have rivals
 _HARDER = 3.0  # times the friction of a rim that slides
 _RUBS = ("rim_friction", "pair_friction")
@@ -85,11 +85,9 @@ def couple(
             continue
         best = estimate(group[0].problem, group[0].start) if len(group) == 1 else None
         if best is None:  # from the best of several starts, with other minima near which it may lie
-            walked = multi_start(
-                [(one.problem, one.start) for one in group], _WALK, ROBUST, _DEARER
-            )
+            walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _WORSE)
             best = estimate(group[0].problem, walked[0][0])
-            near = tuple(x for x, cost in walked if cost < walked[0][1] + _DEARER)
+            near = tuple(x for x, cost in walked if cost < walked[0][1] + _WORSE)
             best = replace(best, minima=near)
         fits.append((_rise(slides, best, group[0]), best))
     least = min(rise for rise, _ in fits)

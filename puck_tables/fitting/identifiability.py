@@ -241,15 +241,13 @@ def _remedy(result: Estimate, shared: list[str], members: list[tuple[int, str]])
         places = [problem.names.index(key) for key in wanted]
         return np.asarray((known.errors / known.plausible)[places])
 
-    now, remedies = errors(result.problem, result.x), list[str]()
+    now, cures = errors(result.problem, result.x), list[str]()
     for words, problem, x in _other_films(result):
         others = errors(problem, x)
         enough = (others < _INFORMATIVE) & (others < _BETTER * now)
-        if enough.all() and not any(one in words for one in remedies):
-            remedies.append(words)
-    return (
-        f"What would tell: {', or '.join(remedies)}." if remedies else "Fix it, or give it a prior."
-    )
+        if enough.all() and not any(one in words for one in cures):
+            cures.append(words)
+    return f"What would tell: {', or '.join(cures)}." if cures else "Fix it, or give it a prior."
 
 
 def _other_films(result: Estimate) -> list[tuple[str, Problem, FloatArray]]:

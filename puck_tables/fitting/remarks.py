@@ -48,18 +48,16 @@ class Remarked:
     @property
     def complaints(self) -> tuple[str, ...]:
         """Signs that the tracks are not those of such a puck."""
-        sentences = [*misfits(self.estimate, self.forces.chance)]
-        if sentences:
-            sentences.append(
+        words = [*misfits(self.estimate, self.forces.chance)]
+        if words:
+            words.append(
                 "Standard errors are widened by what parts of the frames do to the numbers: they "
                 "may still be too small"
             )
-        sentences += filter(None, (self.untied, self.misfit))
+        words += filter(None, (self.untied, self.misfit))
         if self.outliers > 0.2:
-            sentences.append(
-                f"{100.0 * self.outliers:.3g} % of the observations had to be left out"
-            )
-        return tuple(sentences)
+            words.append(f"{100.0 * self.outliers:.3g} % of the observations had to be left out")
+        return tuple(words)
 
     @property
     def doubts(self) -> list[str]:

@@ -39,7 +39,7 @@ _DECELS = 2.0 ** np.arange(-3.0, 3.1, 0.5)  # times the one that fits the loss o
 _FRAMES = 24  # laid beside each other
 _FEW_FRAMES = 60  # frames to which the guesses are fitted
 _KEPT, _KEPT_BLIND = 9, 22  # guesses that are fitted; of tracks without angles
-_DEARER = 15.0  # what minima that are compared on all frames may cost more
+_WORSE = 15.0  # what minima that are compared on all frames may cost more
 _BLIND = 4  # motions that places alone allow
 _NEARER = 2.0 ** np.arange(-0.4, 0.41, 0.05)  # times the best of these: their gap, finer
 _PLACE_SHARE, _FINER_SHARE, _RATE_SHARE = 0.02, 0.005, 0.05
@@ -104,7 +104,7 @@ def minima_of(problem: Problem) -> list[FloatArray]:
         blind = replace(problem, films=(replace(film, angle=None),))
         by_angle = by_place(problem, blind, minima_of(blind)[:_BLIND])
         more += [x for x, _ in multi_start(by_angle, FROM_AFAR, ROBUST)]
-    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _DEARER), more)
+    return _deepest(problem, multi_start(starts, FROM_AFAR, ROBUST, _WORSE), more)
 
 
 def _deepest(
@@ -115,7 +115,7 @@ def _deepest(
     Spins of less than half a turn from frame to frame come first unless they are excluded.
     """
     x, least = minima[0]
-    deepest = [x, *(other for other, cost in minima[1:] if cost < least + _DEARER), *more]
+    deepest = [x, *(other for other, cost in minima[1:] if cost < least + _WORSE), *more]
     marked = problem.films[0].angle is not None
     if marked and "launch_spin" not in problem.spec.fixed:
         spin = problem.names.index((0, "launch_spin"))

@@ -279,11 +279,8 @@ class Crokinole(ShotGame):
         for k in range(self.limit):
             tables.worlds.remove(k, boards=boards)
         for k, (low, high) in enumerate(((0.03, 0.07), (0.13, 0.18), (0.21, 0.24))):
-            far, turn = (
-                rng.uniform(low, high, len(boards)),
-                rng.uniform(-np.pi, np.pi, len(boards)),
-            )
-            tables.worlds.place(self.limit + k, sent(far, turn), boards=boards)
+            far, phi = rng.uniform(low, high, len(boards)), rng.uniform(-np.pi, np.pi, len(boards))
+            tables.worlds.place(self.limit + k, sent(far, phi), boards=boards)
 
     def shoot(
         self, tables: Tables, boards: Whole, actions: FloatArray, rng: np.random.Generator

@@ -20,16 +20,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.base import Base
 from puck_tables.contact.laws import Law
 from puck_tables.kernels.base_boundary import disc_at
-from puck_tables.kernels.base_sums import (
-    GALIN,
-    HERTZ,
-    NOTHING,
-    RING,
-    TABLE,
-    UNIFORM,
-    Sums,
-    plus,
-)
+from puck_tables.kernels.base_sums import GALIN, HERTZ, NOTHING, RING, TABLE, UNIFORM, Sums, plus
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import (
     ABOUT_X,

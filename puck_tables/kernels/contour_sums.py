@@ -13,15 +13,7 @@ from typing import NamedTuple
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.base_boundary import disc_at
 from puck_tables.kernels.base_friction import HEAD, PRESSURE, REACH, base_sums
-from puck_tables.kernels.base_sums import (
-    NOTHING,
-    RING,
-    UNIFORM,
-    Sums,
-    from_slip,
-    plus,
-    scaled,
-)
+from puck_tables.kernels.base_sums import NOTHING, RING, UNIFORM, Sums, from_slip, plus, scaled
 from puck_tables.kernels.circle_arcs import along_arc, slips_under
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.kernels.polygon_sums import (

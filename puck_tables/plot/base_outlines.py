@@ -69,11 +69,9 @@ def draw_along(
 
     outline, radius = outline_of(puck), scale * puck.radius
     mark = radius * (1.0 if puck.shape is None else MARK)
-    length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
-    count = min(most, max(2, int(length[-1] / (2.2 * radius or 1.0)) + 1))
-    chosen = np.unique(
-        np.searchsorted(length, np.linspace(0.0, length[-1], count)).clip(0, x.size - 1)
-    )
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    count = min(most, max(2, int(arc[-1] / (2.2 * radius or 1.0)) + 1))
+    chosen = np.unique(np.searchsorted(arc, np.linspace(0.0, arc[-1], count)).clip(0, x.size - 1))
     for n in chosen:
         there = path_of(placed(outline, x[n], y[n], angle[n], scale))
         axes.add_patch(PathPatch(there, fill=False, color=GREY, linewidth=0.8, zorder=2))

@@ -79,10 +79,8 @@ def _overhang(run: Run) -> str:
 
     over = {event.puck for event in run.events if event.what == "overhang"}
     pucks = zip(run.names, pucks_of(run.scene), strict=True)
-    overhangs = [
-        len(edges_under(run.scene.alone(puck))) > 0 for name, puck in pucks if name in over
-    ]
-    return "; ".join([CARRIED_BY_REST] * any(overhangs) + [OVERHANG] * (not all(overhangs)))
+    hung = [len(edges_under(run.scene.alone(puck))) > 0 for name, puck in pucks if name in over]
+    return "; ".join([CARRIED_BY_REST] * any(hung) + [OVERHANG] * (not all(hung)))
 
 
 def _of_all(run: Run) -> dict[str, str]:

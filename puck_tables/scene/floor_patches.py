@@ -172,15 +172,13 @@ def _reaches_into(ours: FloatArray, theirs: FloatArray, size: float) -> bool:
     """Whether a polygon has part of its border within another one."""
     ahead = np.roll(theirs, -1, axis=0)
     for a, b in zip(ours, np.roll(ours, -1, axis=0), strict=True):
-        shares = {0.0, 1.0}
+        ends = {0.0, 1.0}
         for c, d in zip(theirs, ahead, strict=True):
             along, side = b - a, d - c
             cross = along[0] * side[1] - along[1] * side[0]
             if abs(cross) > 1e-14 * size * size:
-                shares.add(
-                    min(max(((c - a)[0] * side[1] - (c - a)[1] * side[0]) / cross, 0.0), 1.0)
-                )
-        places = sorted(shares)
+                ends.add(min(max(((c - a)[0] * side[1] - (c - a)[1] * side[0]) / cross, 0.0), 1.0))
+        places = sorted(ends)
         for low, high in pairwise(places):
             middle = a + 0.5 * (low + high) * (b - a)
             deep = min(point_to_edge(middle, c, d) for c, d in zip(theirs, ahead, strict=True))

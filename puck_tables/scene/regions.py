@@ -13,13 +13,7 @@ from puck_tables.kernels.quadratic import HEADER, RATIOS
 from puck_tables.motion.body import body_of, is_plain
 from puck_tables.motion.friction_source import closed_form_friction, table_friction
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.by_speed import (
-    UNDER_LAW_ERROR,
-    law_accuracy,
-    law_top,
-    laws_in,
-    load_under,
-)
+from puck_tables.scene.by_speed import UNDER_LAW_ERROR, law_accuracy, law_top, laws_in, load_under
 from puck_tables.scene.floor_parts import directions_in, has_laws_by_place
 from puck_tables.scene.map_of_floor import follows_contour, sums_law
 from puck_tables.scene.parts import Orthotropic

@@ -57,17 +57,15 @@ def _pivot_yield(
     reach = hold.reach
     demand = torque - reach * (cosine * fy - sine * fx)
     length = math.hypot(reach, radius)
-    sense = (1.0 if demand >= 0.0 else -1.0) / length
+    w = (1.0 if demand >= 0.0 else -1.0) / length
     if is_mixed(friction):  # it is summed with what friction holds, and as it was again
         floor_map = friction.by_speed.table
         share = floor_map[SHARE]
         floor_map[SHARE] = -friction.by_speed.normal * share
-    _, _, _, heat = friction_force(
-        friction, radius, sense * reach * sine, -sense * reach * cosine, sense
-    )
+    _, _, _, heat = friction_force(friction, radius, w * reach * sine, -w * reach * cosine, w)
     if is_mixed(friction):
         floor_map[SHARE] = share
-    return abs(demand) / length - heat, sense * reach * sine, -sense * reach * cosine, sense
+    return abs(demand) / length - heat, w * reach * sine, -w * reach * cosine, w
 
 
 @kernel

@@ -284,9 +284,7 @@ def look_up_state(puck: FloatArray, time: float, splines: FloatArray, out: Float
         HEIGHTS,
     )  # fmt: skip
     turn = swung + turning * log_of(known[T_LAUNCH]) - known[HEADING0] + delta * f[REGULAR]
-    (
-        out[PUCK_X], out[PUCK_Y], out[HEADING], out[ORIENTATION], out[SPEED], out[SPIN],
-    ) = state_there(
+    (out[PUCK_X], out[PUCK_Y], out[HEADING], out[ORIENTATION], out[SPEED], out[SPIN]) = state_there(
         (puck[0], puck[1], spin, delta, puck[4], puck[5], known[SPEED0]), (x, y, body), is_fast,
         min(part * f[0], 1.0), known[SLIP] * ((1.0 - elapsed) * known[T_LAUNCH] / f[1]),
         turn if spin > 0.0 else -turn, (f[2], f[3], f[4]),

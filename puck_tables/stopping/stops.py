@@ -62,7 +62,7 @@ class Stops(Differentiated, Result):
     picture: ClassVar[str] = "places"
     JACOBIAN_ROWS: ClassVar[tuple[str, ...]] = STOP_NAMES
     JACOBIAN_COLUMNS: tuple[str, ...] = LAUNCH_NAMES
-    _described: dict[str, Any]  # of results that were pickled
+    _said: dict[str, Any]  # of results that were pickled
 
     def __init__(
         self, solver: SolverPerHeight | BaseSolver, launches: Launches, threads: int | None,
@@ -89,23 +89,19 @@ class Stops(Differentiated, Result):
 
     def __getstate__(self) -> dict[str, Any]:
         """The results alone: tables stay where they are."""
-        words = {
-            "method": self.method,
-            "selections": self.selections,
-            "explanation": self.explain(),
-        }
+        said = {"method": self.method, "selections": self.selections, "explanation": self.explain()}
         kept = {"_rest": self._others, "_launches": self._own_launches}
-        return {**self.__dict__, **kept, "_solver": None, "_described": words}
+        return {**self.__dict__, **kept, "_solver": None, "_said": said}
 
     @property
     def method(self) -> str:
         """'look-up', 'integrated', or both where heights differ."""
-        return self._described["method"] if self._solver is None else self._solver.method
+        return self._said["method"] if self._solver is None else self._solver.method
 
     @property
     def selections(self) -> tuple[Selection, ...]:
         """What was selected for the tolerance; empty with a stop table of one's own."""
-        return self._described["selections"] if self._solver is None else self._solver.selections
+        return self._said["selections"] if self._solver is None else self._solver.selections
 
     @property
     def _own_launches(self) -> Launches:
@@ -160,11 +156,7 @@ class Stops(Differentiated, Result):
 
     def explain(self) -> str:
         """Which method was taken, and why."""
-        return (
-            str(self._described["explanation"])
-            if self._solver is None
-            else self._solver.explanation
-        )
+        return str(self._said["explanation"]) if self._solver is None else self._solver.explanation
 
     def dataset(self) -> Dataset:
         """Launches and their stops, over as many axes as the launches have."""

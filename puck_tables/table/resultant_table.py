@@ -105,11 +105,9 @@ class ResultantTable(LawTable):
     def columns(self) -> FloatArray:
         """What :mod:`puck_tables.kernels.quadratic` reads, fitted at first use; read-only."""
         terms = height_terms(self.values, self.heights)
-        coefficients = np.ascontiguousarray(
-            sided_coefficients(self.axis.by_side(terms), True) / 6.0
-        )
-        coefficients.flags.writeable = False
-        return coefficients
+        spline = np.ascontiguousarray(sided_coefficients(self.axis.by_side(terms), True) / 6.0)
+        spline.flags.writeable = False
+        return spline
 
     def section(self, delta: float) -> FloatArray:
         """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.

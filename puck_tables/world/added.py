@@ -19,7 +19,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import layout
 from puck_tables.world.by_hand import with_integrated
 from puck_tables.world.engine_state import (
-    LAUNCH_DISC,
+    LAUNCH_I,
     N_HISTORY,
     N_LAUNCHES,
     N_PIECES,
@@ -87,7 +87,7 @@ def with_puck(
     used, motion = int(engine.counts[N_PIECES]), new.pieces[slice(*new.drives[count])].copy()
     motion[:, BEGINS] += now
     pieces = np.vstack([engine.pieces[:used], motion, np.zeros((max(used, 128), motion.shape[1]))])
-    launch = new.launches[new.launches[:, LAUNCH_DISC] == count] + np.array([now, 0, 0, 0, 0])
+    launch = new.launches[new.launches[:, LAUNCH_I] == count] + np.array([now, 0, 0, 0, 0])
     done = int(engine.counts[N_LAUNCHES])
     later = np.vstack([engine.launches[done:], launch])
     later = later[np.argsort(later[:, 0], kind="stable")]

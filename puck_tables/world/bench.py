@@ -8,10 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.world.bulk import own_engine
-from puck_tables.world.engine_state import (
-    Engine,
-    Whole,
-)
+from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.group_paths import Workplace, workplace_for
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.passings import COLUMNS

@@ -45,7 +45,7 @@ from puck_tables.world.contact_search import (
 )
 from puck_tables.world.engine_state import N_LOOKS, Engine
 from puck_tables.world.floor_under import floor_map_span, off_border
-from puck_tables.world.layout import INVERSE_MASS, LIES, RADIUS, ROUNDED, A
+from puck_tables.world.layout import INV_MASS, LIES, RADIUS, ROUNDED, A
 from puck_tables.world.segment import GONE, corridor, moves_until, state_at
 from puck_tables.world.separation import stays_apart
 
@@ -179,7 +179,7 @@ def next_border(
     """
     kind, segment, disc = engine.kinds[i], engine.segments[i], engine.discs[i]
     last = min(horizon, moves_until(kind, segment), once_round(kind, segment, now))
-    if kind == GONE or not last > now or disc[INVERSE_MASS] == 0.0:
+    if kind == GONE or not last > now or disc[INV_MASS] == 0.0:
         return math.inf
     first, after = floor_map_span(engine.regions, engine.discs, i)
     floor_map, radius = engine.regions.floor_map[first:after], disc[RADIUS]

@@ -13,8 +13,8 @@ from puck_tables.world.group_forces import acceleration
 from puck_tables.world.holds import response
 from puck_tables.world.layout import (
     HOLD,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
+    INV_INERTIA,
+    INV_MASS,
     RADIUS,
     along_of_pair,
     curvature,
@@ -57,9 +57,9 @@ def _slownesses(
     disc: FloatArray, state: FloatArray, nx: float, ny: float
 ) -> tuple[float, float, float]:
     """How much a unit impulse changes approach and slip: 1/m_n, 1/m_t, and one the other."""
-    light, radius = disc[INVERSE_MASS], disc[RADIUS]
+    light, radius = disc[INV_MASS], disc[RADIUS]
     if disc[HOLD] == 0.0:
-        return light, light + disc[INVERSE_INERTIA] * radius * radius, 0.0
+        return light, light + disc[INV_INERTIA] * radius * radius, 0.0
     dx, dy, turn = response(disc, state, nx, ny, 0.0)
     cross = dy * nx - dx * ny + radius * turn
     ex, ey, spin = response(disc, state, -ny, nx, radius)

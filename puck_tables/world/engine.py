@@ -11,7 +11,7 @@ from puck_tables.world.borders import next_border
 from puck_tables.world.contact_row import SUM_N, SUM_T, got_impulse
 from puck_tables.world.contact_search import are_apart, next_contact, next_crossing, rest_together
 from puck_tables.world.engine_state import (
-    LAUNCH_DISC,
+    LAUNCH_I,
     LAUNCH_SPIN,
     LAUNCH_TIME,
     LAUNCH_VX,
@@ -32,7 +32,7 @@ from puck_tables.world.engine_state import (
 from puck_tables.world.impact import TOO_FAST, collide
 from puck_tables.world.layout import (
     EDGE,
-    INVERSE_MASS,
+    INV_MASS,
     KIND,
     NO_CUSHION,
     ON_FLOOR,
@@ -96,7 +96,7 @@ def _look_at_board(engine: Engine, i: int, t: float, room: Room) -> None:
     if engine.kinds[i] == PATH:
         _earlier(engine, i, engine.segments[i, UNTIL], PATH_ENDS)
     for k in range(engine.obstacles.shape[0]):
-        shape, driven = int(engine.obstacles[k, KIND]), engine.discs[i, INVERSE_MASS] == 0.0
+        shape, driven = int(engine.obstacles[k, KIND]), engine.discs[i, INV_MASS] == 0.0
         if driven and (shape == OVERHANG or shape < NO_CUSHION):
             continue  # what is driven is carried, and its way leads past cushions
         if shape >= ON_FLOOR:
@@ -188,7 +188,7 @@ def _happen(engine: Engine, i: int, partner: int, t: float, room: Room) -> int:
 @inlined
 def _launch(engine: Engine, row: FloatArray, t: float, room: Room) -> int:
     """A later launch of a disc, if it is still in play."""
-    i = int(row[LAUNCH_DISC])
+    i = int(row[LAUNCH_I])
     for j in range(engine.discs.shape[0]):
         room.marks[j] = CURRENT
     if engine.kinds[i] == GONE:

@@ -42,7 +42,7 @@ TOGETHER = (
     "(tangential = -1), or move a puck"
 )
 
-LAUNCH_TIME, LAUNCH_DISC, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
+LAUNCH_TIME, LAUNCH_I, LAUNCH_VX, LAUNCH_VY, LAUNCH_SPIN = range(5)
 LAUNCH_COLUMNS = 5  # the five above
 
 HISTORY_COLUMNS = 2 + SEGMENT_COLUMNS  # disc, kind, segment

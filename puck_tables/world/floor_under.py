@@ -60,7 +60,7 @@ from puck_tables.world.layout import (
     EDGE_NUMBER,
     HEIGHT_RATIO,
     INTEGRATED,
-    INVERSE_MASS,
+    INV_MASS,
     KIND,
     LIES,
     NORMAL,
@@ -315,7 +315,7 @@ def step_onto(engine: Engine, i: int) -> None:
 @inlined
 def is_beyond(disc: FloatArray, edge: FloatArray, x: float, y: float) -> bool:
     """Whether the rim of a disc at a place, which is not driven, is over an edge."""
-    return disc[INVERSE_MASS] > 0.0 and edge[A] * x + edge[B] * y - edge[C] < disc[RADIUS]
+    return disc[INV_MASS] > 0.0 and edge[A] * x + edge[B] * y - edge[C] < disc[RADIUS]
 
 
 @inlined
@@ -324,7 +324,7 @@ def lie_at(engine: Engine, i: int, x: float, y: float) -> None:
     disc = engine.discs[i]
     first, last = floor_map_span(engine.regions, engine.discs, i)
     floor_map = engine.regions.floor_map[first:last]
-    if disc[INVERSE_MASS] > 0.0:  # else it is driven, and may have no map
+    if disc[INV_MASS] > 0.0:  # else it is driven, and may have no map
         for number in range(engine.discs.shape[1] - LIES):
             away = off_border(floor_map, number, x, y)
             disc[LIES + number] = lies_to(away, disc[RADIUS])

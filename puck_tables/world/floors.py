@@ -18,12 +18,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.quadratic import NO_SECTION
 from puck_tables.scene.by_speed import NO_LAW, law_range, law_table, law_top, load_under
 from puck_tables.scene.floor_map import NO_FLOOR_MAP
-from puck_tables.scene.floor_parts import (
-    belts_of,
-    count_parts,
-    has_laws_by_place,
-    needs_sums,
-)
+from puck_tables.scene.floor_parts import belts_of, count_parts, has_laws_by_place, needs_sums
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
 from puck_tables.scene.ingredients import BySpeed, Regions, Surface, floor_velocity
 from puck_tables.scene.map_of_floor import edges_under, floor_map_of, follows_contour, sums_law

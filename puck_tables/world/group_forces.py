@@ -46,8 +46,8 @@ from puck_tables.world.layout import (
     DECEL,
     DRAG,
     HOLD,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
+    INV_INERTIA,
+    INV_MASS,
     PULL_X,
     PULL_Y,
     RADIUS,
@@ -79,9 +79,9 @@ def pull_on(
     first, last = spans[i, 0], spans[i, 1]
     if first < last:
         fx, fy, torque = prescribed_by(forcing[first:last], passed, t)
-        ax += discs[i, INVERSE_MASS] * fx
-        ay += discs[i, INVERSE_MASS] * fy
-        turn += discs[i, INVERSE_INERTIA] * torque
+        ax += discs[i, INV_MASS] * fx
+        ay += discs[i, INV_MASS] * fy
+        turn += discs[i, INV_INERTIA] * torque
     return ax, ay, turn
 
 
@@ -89,7 +89,7 @@ def pull_on(
 def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[float, float]:
     """The acceleration of the centre."""
     disc = engine.discs[i]
-    if disc[INVERSE_MASS] == 0.0:
+    if disc[INV_MASS] == 0.0:
         return 0.0, 0.0  # straight on
     passed = rows_passed(engine.forcing, engine.spans[i, 0], engine.spans[i, 1], t)
     ax, ay, turn = pull_on(engine.discs, engine.forcing, engine.spans, i, passed, t)
@@ -105,7 +105,7 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
             fx, fy, _, _ = friction_force(
                 at_slip_zero(friction, 1.0), disc[RADIUS], (ax - cx) / push, (ay - cy) / push, 0.0
             )  # fmt: skip
-            holds = disc[INVERSE_MASS] * math.hypot(fx, fy)
+            holds = disc[INV_MASS] * math.hypot(fx, fy)
         left = 1.0 - holds / push if push > engine.surface.static * holds else 0.0
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
@@ -114,9 +114,9 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
         )
         fx, fy, torque, _ = friction_force(friction, disc[RADIUS], ux, uy, w)
         dx, dy, slows, _, _ = dragged(disc[DRAG:], ux, uy, w)
-        ax += disc[INVERSE_MASS] * fx + dx
-        ay += disc[INVERSE_MASS] * fy + dy
-        turn += disc[INVERSE_INERTIA] * torque + slows
+        ax += disc[INV_MASS] * fx + dx
+        ay += disc[INV_MASS] * fy + dy
+        turn += disc[INV_INERTIA] * torque + slows
     ax, ay, _ = led(disc, engine.surface, state, ax, ay, turn)
     return ax, ay
 
@@ -225,7 +225,7 @@ def act(
         if doing == DRIVEN:
             continue
         px, py, pull = _pull_on(group, members, place, buffer)
-        light, turns = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
+        light, turns = disc[INV_MASS], disc[INV_INERTIA]
         power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
         rubbed = is_over_belts(group.regions, group.discs, number)
         if doing == HELD:
@@ -309,7 +309,7 @@ def _wanted_of_floor(
     disc = group.discs[members[place]]
     fx, fy, torque = force_of_contacts(buffer, count, place)
     px, py, pull = _pull_on(group, members, place, buffer)
-    light, turns = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
+    light, turns = disc[INV_MASS], disc[INV_INERTIA]
     floor = buffer.floor_accels[place]
     fx, fy = fx + (px - floor[0]) / light, fy + (py - floor[1]) / light
     return fx, fy, torque + (pull - floor[2]) / turns
@@ -330,7 +330,7 @@ def excess_on(
         excess, ux, uy, w = free_yield(friction, disc[RADIUS], fx, fy, torque, False)
         return excess / load, ux, uy, w
     hold = constraint_on(disc)
-    body = Body(1.0 / disc[INVERSE_MASS], 1.0 / disc[INVERSE_INERTIA], disc[RADIUS])
+    body = Body(1.0 / disc[INV_MASS], 1.0 / disc[INV_INERTIA], disc[RADIUS])
     excess, ux, uy, w = constrained_yield(
         friction, hold, body, y[place, THETA], 0.0, 0.0, 0.0, fx, fy, torque, True
     )

@@ -26,7 +26,7 @@ from puck_tables.world.engine_state import (
     Whole,
 )
 from puck_tables.world.group_paths import Workplace, paths_of
-from puck_tables.world.layout import INVERSE_MASS, RADIUS, kinetic, write_over
+from puck_tables.world.layout import INV_MASS, RADIUS, kinetic, write_over
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import DURATION, FIRST, FOR_EVER
 from puck_tables.world.paths import START as BEGINS
@@ -175,15 +175,15 @@ def _send(engine: Engine, t: float, size: int, contacts: int, room: Room, place:
     _note_contacts(engine, t, kept, first_row, room, place)
     led = NONE
     for i in members:
-        if engine.discs[i, INVERSE_MASS] == 0.0:
+        if engine.discs[i, INV_MASS] == 0.0:
             led = i if led == NONE else SEVERAL
     if jump[RIM_HEAT] != 0.0 and led >= 0 and alone:  # no cushion shares it
         jump[BACK_X] = jump[BACK_Y] = 0.0
         for i in members:
-            if engine.discs[i, INVERSE_MASS] > 0.0:
+            if engine.discs[i, INV_MASS] > 0.0:
                 for m in range(2):
                     change = room.before[i, VX + m] - states[i, VX + m]
-                    jump[BACK_X + m] += change / engine.discs[i, INVERSE_MASS]
+                    jump[BACK_X + m] += change / engine.discs[i, INV_MASS]
     jump[RIM_HEAT] = 0.0  # the event has it
     for i in members:  # a rim that gripped at once has changed what touches it, too
         for column in range(6):
@@ -206,7 +206,7 @@ def _tips(engine: Engine, t: float, members: Whole, room: Room) -> bool:
     for i in members:
         write_over(room.states[i], room.before[i])
     for i in members:
-        if engine.discs[i, INVERSE_MASS] > 0.0 and loses_balance(engine, i, t, room):
+        if engine.discs[i, INV_MASS] > 0.0 and loses_balance(engine, i, t, room):
             leave(engine, i, t, TIPS, i, room)
             room.marks[i], tipped = SENT, True
     return tipped

@@ -32,8 +32,8 @@ from puck_tables.world.layout import (
     HOLD_VY,
     HOLD_X,
     HOLD_Y,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
+    INV_INERTIA,
+    INV_MASS,
 )
 
 
@@ -59,7 +59,7 @@ def response(
     disc: FloatArray, state: FloatArray, px: float, py: float, turn: float
 ) -> tuple[float, float, float]:
     """The change of velocity and spin by an impulse and a moment of it."""
-    light, turns, kind = disc[INVERSE_MASS], disc[INVERSE_INERTIA], int(disc[HOLD])
+    light, turns, kind = disc[INV_MASS], disc[INV_INERTIA], int(disc[HOLD])
     if kind == FREE:
         return light * px, light * py, turns * turn
     ex, ey = edge_of(disc, state)
@@ -88,7 +88,7 @@ def work_of_hold(
         ex, ey = edge_of(disc, state)
         sx, sy, _ = floor_velocity(surface, state[X], state[Y])
         wx, wy = sx - disc[HOLD_VX] * ey, sy + disc[HOLD_VX] * ex
-    return (dx / disc[INVERSE_MASS] - px) * wx + (dy / disc[INVERSE_MASS] - py) * wy
+    return (dx / disc[INV_MASS] - px) * wx + (dy / disc[INV_MASS] - py) * wy
 
 
 @inlined
@@ -101,7 +101,7 @@ def led(
         return ax, ay, turn
     ex, ey = edge_of(disc, state)
     if kind == PIVOT:
-        light, turns, reach = disc[INVERSE_MASS], disc[INVERSE_INERTIA], disc[HOLD_REACH]
+        light, turns, reach = disc[INV_MASS], disc[INV_INERTIA], disc[HOLD_REACH]
         whole = 1.0 / turns + reach * reach / light
         alpha = (turn / turns + reach * (ey * ax - ex * ay) / light) / whole
         towards = reach * state[SPIN] * state[SPIN]

@@ -52,14 +52,7 @@ from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scale
 from puck_tables.world.group import NX as SIGHT_NX
 from puck_tables.world.group import NY as SIGHT_NY
 from puck_tables.world.holds import forbid, response
-from puck_tables.world.layout import (
-    HOLD,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
-    RADIUS,
-    smaller_at,
-    write_over,
-)
+from puck_tables.world.layout import HOLD, INV_INERTIA, INV_MASS, RADIUS, smaller_at, write_over
 from puck_tables.world.multipliers import stop_slips
 from puck_tables.world.touching import dies_out
 
@@ -160,9 +153,9 @@ def as_forces(
                 continue
             disc = engine.discs[i]
             contact[ARM + m] = disc[RADIUS]
-            if buffer.inverse[i, 0] > 0.0 or disc[INVERSE_MASS] == 0.0:
+            if buffer.inverse[i, 0] > 0.0 or disc[INV_MASS] == 0.0:
                 continue
-            buffer.inverse[i, 0], buffer.inverse[i, 1] = disc[INVERSE_MASS], disc[INVERSE_INERTIA]
+            buffer.inverse[i, 0], buffer.inverse[i, 1] = disc[INV_MASS], disc[INV_INERTIA]
             own = buffer.own[i]
             own[0], own[1], own[2] = states[i, VX], states[i, VY], states[i, SPIN]
             if disc[HOLD] != 0.0:

@@ -26,15 +26,7 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.engine_state import LAUNCH_TIME, N_EVENTS, N_HISTORY, TIME, Engine, Whole
 from puck_tables.world.floor_under import SURE, floor_of, law_goes_to, law_under, least_slip
 from puck_tables.world.floors import slip_of_rim
-from puck_tables.world.layout import (
-    DRAG,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
-    PULL_X,
-    PULL_Y,
-    RADIUS,
-    TWIST,
-)
+from puck_tables.world.layout import DRAG, INV_INERTIA, INV_MASS, PULL_X, PULL_Y, RADIUS, TWIST
 from puck_tables.world.lone_model import model_of
 from puck_tables.world.paths import DURATION, FOR_EVER
 from puck_tables.world.paths import START as PIECE_START
@@ -132,7 +124,7 @@ def moves_on(engine: Engine, n: int, end: float, room: Room) -> float:
     if kind == DAMPED:
         return end
     if kind == PATH:
-        driven = engine.discs[int(engine.history[n, 0]), INVERSE_MASS] == 0.0
+        driven = engine.discs[int(engine.history[n, 0]), INV_MASS] == 0.0
         end = min(end, segment[UNTIL])
         if driven or _slip_at(engine, n, start, room) > at_rest_below(engine):
             return end
@@ -233,11 +225,11 @@ def longest_of(engine: Engine, scales: FloatArray) -> FloatArray:
 
 def braking_of(engine: Engine) -> tuple[float, float, float]:
     """How long the least friction takes over a speed, s²/m, what forces add to it, m/s; drag, s."""
-    free = engine.discs[engine.discs[:, INVERSE_MASS] > 0.0]
+    free = engine.discs[engine.discs[:, INV_MASS] > 0.0]
     decels = engine.floors[:, 0]
     brakes = _brakes(engine)
     brakes = brakes[(decels > 0.0) & (brakes > _SLOWEST * decels.max())]
-    arms = free[:, INVERSE_MASS] / (free[:, INVERSE_INERTIA] * free[:, RADIUS] ** 2)  # k²
+    arms = free[:, INV_MASS] / (free[:, INV_INERTIA] * free[:, RADIUS] ** 2)  # k²
     lever = float((2.0 * arms).max(initial=1.0)) / float(brakes.min(initial=math.inf))
     drags = free[free[:, DRAG + SLIDING] > 0.0, DRAG + SLIDING]
     return lever, float(_pushed(engine).max()), float((1.0 / drags).max(initial=0.0))
@@ -265,7 +257,7 @@ def _fill_brakes(engine: Engine, y: FloatArray, out: FloatArray) -> None:
         friction = DryFriction(regions.load[row], regions.delta[row], regions.limits[row], law)
         phase = Phase(model_of(engine, i), friction, 0, SLIDES, NO_DIRECTION, 0.0)
         excess = abs(excess_at_rest(phase, 0.0, y)[0])
-        out[row] = min(excess, regions.load[row]) * engine.discs[i, INVERSE_MASS]
+        out[row] = min(excess, regions.load[row]) * engine.discs[i, INV_MASS]
 
 
 def _pushed(engine: Engine) -> FloatArray:
@@ -274,7 +266,7 @@ def _pushed(engine: Engine) -> FloatArray:
     for i in np.flatnonzero(engine.spans[:, 0] < engine.spans[:, 1]).tolist():
         rows, disc = engine.forcing[slice(*engine.spans[i])], engine.discs[i]
         strength = np.hypot(rows[:, 1], rows[:, 2]) + np.abs(rows[:, 3]) / disc[RADIUS]
-        pushes[i] = disc[INVERSE_MASS] * np.trapezoid(strength, rows[:, 0])
+        pushes[i] = disc[INV_MASS] * np.trapezoid(strength, rows[:, 0])
     return pushes
 
 
@@ -308,7 +300,7 @@ def with_law_for(
             floor_of(engine.surface, engine.discs[i]),
             room.states[i].tolist(),
         )
-        if engine.discs[i, INVERSE_MASS] == 0.0 or fastest < SURE * top:
+        if engine.discs[i, INV_MASS] == 0.0 or fastest < SURE * top:
             continue
         if top == end_of_laws(scene)[0]:
             raise SpeedError(

@@ -31,7 +31,7 @@ from puck_tables.scene.restitution_at import restitution_at
 
 OF_PAIR_RESTITUTION, OF_PAIR_TANGENTIAL, OF_PAIR_FRICTION = range(3)
 # columns of a disc; one whose motion is given has the inverses 0
-RADIUS, INVERSE_MASS, INVERSE_INERTIA, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
+RADIUS, INV_MASS, INV_INERTIA, DECEL, DELTA = range(5)  # r, 1/m, 1/I, J = f g, 2 f h/r
 RESTITUTION, TANGENTIAL, FRICTION = 5, 6, 7  # of its rim
 # 1: also alone; what is known of its motion is an integral, no table.  2: nor does DECEL say what
 # holds it at rest
@@ -126,11 +126,9 @@ def smaller_at(rims: FloatArray, one: float, other: float, speed: float) -> floa
 @inlined
 def kinetic(disc: FloatArray, vx: float, vy: float, spin: float) -> float:
     """½ m v² + ½ I ω², J; nothing of what is driven."""
-    if disc[INVERSE_MASS] == 0.0:
+    if disc[INV_MASS] == 0.0:
         return 0.0
-    return (
-        0.5 * (vx * vx + vy * vy) / disc[INVERSE_MASS] + 0.5 * spin * spin / disc[INVERSE_INERTIA]
-    )
+    return 0.5 * (vx * vx + vy * vy) / disc[INV_MASS] + 0.5 * spin * spin / disc[INV_INERTIA]
 
 
 @inlined

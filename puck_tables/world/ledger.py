@@ -35,7 +35,7 @@ from puck_tables.world.engine_state import (
     WHAT,
     Engine,
 )
-from puck_tables.world.layout import INVERSE_INERTIA, INVERSE_MASS, PULL_X, PULL_Y, kinetic
+from puck_tables.world.layout import INV_INERTIA, INV_MASS, PULL_X, PULL_Y, kinetic
 from puck_tables.world.record import first_from
 from puck_tables.world.segment import DAMPED, DRIFT_X, DRIFT_Y, GONE, PATH, START, STILL, state_at
 from puck_tables.world.segment_starts import Room
@@ -70,7 +70,7 @@ _NOTHING = 1e-6  # of what the pucks hold at the scale of speeds: an energy next
 
 def energy_scale(engine: Engine) -> float:
     """The least energy to which what a ledger misses is compared, J."""
-    light = engine.discs[:, INVERSE_MASS]
+    light = engine.discs[:, INV_MASS]
     return _NOTHING * 0.5 * float((1.0 / light[light > 0.0]).sum() * engine.scale[0] ** 2)
 
 
@@ -78,7 +78,7 @@ def energy_scale(engine: Engine) -> float:
 def _pulled(engine: Engine, i: int, start: float, t: float, vx: float, vy: float) -> float:
     """What slope and given forces work on a disc that a belt carries, from the start to t, J."""
     disc, first, last = engine.discs[i], engine.spans[i, 0], engine.spans[i, 1]
-    work = (disc[PULL_X] * vx + disc[PULL_Y] * vy) / disc[INVERSE_MASS] * (t - start)
+    work = (disc[PULL_X] * vx + disc[PULL_Y] * vy) / disc[INV_MASS] * (t - start)
     for n in range(first + max(rows_passed(engine.forcing, first, last, start), 1), last):
         one, two = engine.forcing[n - 1], engine.forcing[n]
         begin, end = max(one[0], start), min(two[0], t)
@@ -95,7 +95,7 @@ def _begin_flown(engine: Engine, n: int, room: Room) -> bool:
     """The state at the start of a segment into ``room.one``; False: it is integrated, or driven."""
     row = engine.history[n]
     i, kind, segment = int(row[0]), int(row[1]), row[2:]
-    if engine.discs[i, INVERSE_MASS] == 0.0 or kind in (PATH, GONE):
+    if engine.discs[i, INV_MASS] == 0.0 or kind in (PATH, GONE):
         return False
     state_at(
         kind, segment, engine.discs[i], engine.lookups, engine.pieces, segment[START], room.work,
@@ -210,7 +210,7 @@ def energies_of(world: World, times: FloatArray, states: FloatArray) -> dict[str
 
 def kinetic_of(engine: Engine, states: FloatArray) -> FloatArray:
     """½ m v² + ½ I ω² of states (..., discs, 6), J; nothing of what is driven."""
-    light, turn = engine.discs[:, INVERSE_MASS], engine.discs[:, INVERSE_INERTIA]
+    light, turn = engine.discs[:, INV_MASS], engine.discs[:, INV_INERTIA]
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = 0.5 * (states[..., VX] ** 2 + states[..., VY] ** 2) / light
         energy = energy + 0.5 * states[..., SPIN] ** 2 / turn

@@ -52,12 +52,7 @@ from puck_tables.scene.moments import (
     rests_on,
 )
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.scene.steps import (
-    STAGES,
-    follow_scales,
-    step,
-    up_to_the_stop,
-)
+from puck_tables.scene.steps import STAGES, follow_scales, step, up_to_the_stop
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import (
     choose_belt,

@@ -18,21 +18,9 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.world.engine_state import Engine
-from puck_tables.world.floor_under import (
-    changes_below,
-    floor_of,
-    moves_along,
-)
+from puck_tables.world.floor_under import changes_below, floor_of, moves_along
 from puck_tables.world.holds import constraint_on
-from puck_tables.world.layout import (
-    DRAG,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
-    PULL_X,
-    PULL_Y,
-    RADIUS,
-    TWIST,
-)
+from puck_tables.world.layout import DRAG, INV_INERTIA, INV_MASS, PULL_X, PULL_Y, RADIUS, TWIST
 
 _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
 
@@ -41,7 +29,7 @@ _FARTHER = 0.1  # of the time since the start: so far ahead a path may go
 def model_of(engine: Engine, i: int) -> Model:
     """All that acts on a disc but dry friction."""
     disc = engine.discs[i]
-    mass, inertia = 1.0 / disc[INVERSE_MASS], 1.0 / disc[INVERSE_INERTIA]
+    mass, inertia = 1.0 / disc[INV_MASS], 1.0 / disc[INV_INERTIA]
     drive = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
     forces = Forces(
         mass * disc[PULL_X], mass * disc[PULL_Y], inertia * disc[TWIST], drive,

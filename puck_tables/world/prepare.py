@@ -15,14 +15,7 @@ from puck_tables.scene.forces import drags_of
 from puck_tables.scene.friction import SPIN, THETA, VX, VY
 from puck_tables.scene.ingredients import RAIL, Surface, hold_of
 from puck_tables.scene.launch_constraints import allowed_velocity
-from puck_tables.scene.over_time import (
-    FLOOR_SPIN,
-    FLOOR_X,
-    FLOOR_Y,
-    FORCED,
-    motion_of,
-    over_time,
-)
+from puck_tables.scene.over_time import FLOOR_SPIN, FLOOR_X, FLOOR_Y, FORCED, motion_of, over_time
 from puck_tables.scene.parts import Floor
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
@@ -207,7 +200,7 @@ def _fill_disc(
     if puck.path:
         return
     inertia = puck.mass * puck.inertia_radius**2
-    disc[layout.INVERSE_MASS], disc[layout.INVERSE_INERTIA] = 1.0 / puck.mass, 1.0 / inertia
+    disc[layout.INV_MASS], disc[layout.INV_INERTIA] = 1.0 / puck.mass, 1.0 / inertia
     disc[layout.PULL_X : layout.TWIST + 1] = _pull_on(scene, puck, inertia)
     disc[layout.HOLD : layout.HOLD_PLACE + 1] = _hold_on(puck)
     disc[layout.DRAG : layout.LIES] = drags_of(scene.drag, scene.lateral, puck.mass, inertia)
@@ -332,7 +325,7 @@ def _strongest(engine: Engine) -> float:
     of = np.concatenate([np.arange(len(counts)), forced])  # each without its force, and with it
     forces = engine.forcing[:, :FORCED]
     rows, discs = np.vstack([np.zeros((len(counts), FORCED)), forces]), discs[of]
-    light, turns = discs[:, layout.INVERSE_MASS], discs[:, layout.INVERSE_INERTIA]
+    light, turns = discs[:, layout.INV_MASS], discs[:, layout.INV_INERTIA]
     ax = discs[:, layout.PULL_X] + light * rows[:, 1]
     ay = discs[:, layout.PULL_Y] + light * rows[:, 2]
     rim = discs[:, layout.RADIUS] * (discs[:, layout.TWIST] + turns * rows[:, 3])

@@ -54,7 +54,7 @@ from puck_tables.world.group_forces import (
     rest_on_floor,
     slip_of,
 )
-from puck_tables.world.layout import INVERSE_INERTIA, INVERSE_MASS, RADIUS, write_over
+from puck_tables.world.layout import INV_INERTIA, INV_MASS, RADIUS, write_over
 from puck_tables.world.multipliers import leads, push_and_move, stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT
 
@@ -82,7 +82,7 @@ def _turn(
         scale[0] = max(_LONGEST, 0.5 * scale[0]) if off > 1.001 * scale[1] else 1.3 * scale[0]
     scale[1] = off
     disc = group.discs[number]
-    turns = max(disc[INVERSE_MASS], 0.5 * radius * radius * disc[INVERSE_INERTIA])
+    turns = max(disc[INV_MASS], 0.5 * radius * radius * disc[INV_INERTIA])
     share = scale[0] / (load_on(group, number) * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
@@ -188,11 +188,9 @@ def _energy(group: Group, members: IntArray, y: FloatArray) -> float:
     total = 0.0
     for place in range(members.shape[0]):
         disc = group.discs[members[place]]
-        if disc[INVERSE_MASS] > 0.0:
+        if disc[INV_MASS] > 0.0:
             square = y[place, VX] ** 2 + y[place, VX + 1] ** 2
-            total += 0.5 * (
-                square / disc[INVERSE_MASS] + y[place, SPIN] ** 2 / disc[INVERSE_INERTIA]
-            )
+            total += 0.5 * (square / disc[INV_MASS] + y[place, SPIN] ** 2 / disc[INV_INERTIA])
     return total
 
 
@@ -278,7 +276,7 @@ def press(
         write_over(y[place], states[number])
         motions[place] = MOVES
         choose_belt(group.regions, group.discs, number, y[place])
-        if group.discs[number, INVERSE_MASS] == 0.0:
+        if group.discs[number, INV_MASS] == 0.0:
             motions[place] = DRIVEN
         elif can_rest(group, number):
             q = slip_of(group, number, y[place])

@@ -42,7 +42,7 @@ from puck_tables.world.group import (
     small_slip,
 )
 from puck_tables.world.group_forces import can_rest, count_rows, slip_at
-from puck_tables.world.layout import INVERSE_MASS, LIES, RADIUS, ROUNDED, write_over
+from puck_tables.world.layout import INV_MASS, LIES, RADIUS, ROUNDED, write_over
 from puck_tables.world.paths import DURATION, START, on_piece, piece_at
 from puck_tables.world.stepping import (
     BEGIN,
@@ -112,7 +112,7 @@ def _comes_over(group: Group, members: IntArray, buffer: GroupBuffer) -> int:
     One that only just touches one has long been there.
     """
     for place in range(members.shape[0]):
-        if group.discs[members[place], INVERSE_MASS] > 0.0:
+        if group.discs[members[place], INV_MASS] > 0.0:
             before = _room_of(group, members, place, buffer.states[0])
             if before > 0.0 > _room_of(group, members, place, buffer.states[1]):
                 return place

@@ -50,7 +50,7 @@ from puck_tables.world.layout import (
     DECEL,
     HOLD,
     INTEGRATED,
-    INVERSE_MASS,
+    INV_MASS,
     KIND,
     NO_CUSHION,
     RADIUS,
@@ -224,7 +224,7 @@ def _described(engine: g.Engine) -> list[Rest]:
         there = states_on(engine, unsure, middles)
         moves[unsure] = slips_over(engine, discs[unsure], there, middles) > STUCK * engine.scale[0]
     # none of what is driven, or what nothing can hold
-    held = (rows[:, INVERSE_MASS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
+    held = (rows[:, INV_MASS] > 0.0) & ((rows[:, DECEL] > 0.0) | (rows[:, INTEGRATED] > 0.0))
     own = np.argsort(discs, kind="stable")
     rests: list[tuple[int, float, str]] = []
     disc, rested = -1, True

@@ -26,7 +26,7 @@ from puck_tables.world.lasting import (
     limits_of,
     next_target,
 )
-from puck_tables.world.layout import INVERSE_MASS
+from puck_tables.world.layout import INV_MASS
 from puck_tables.world.named_pucks import called, pucks_of
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
@@ -318,7 +318,7 @@ class Running(Playing):
     def _led(self, puck: int | str, in_play: bool = True) -> int:
         """The disc of a puck that is led."""
         i = self._in_play(puck) if in_play else int(self._place[number_of(puck, self.names)])
-        if self._engine.discs[i, INVERSE_MASS] > 0.0:
+        if self._engine.discs[i, INV_MASS] > 0.0:
             raise InputError(
                 f"{self._name(i)} is not led by hand: give it a path of one row, path=[[0, x, y]], "
                 "or strike it"

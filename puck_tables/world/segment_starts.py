@@ -70,8 +70,8 @@ from puck_tables.world.group import GroupBuffer, buffer_for
 from puck_tables.world.holds import work_of_hold
 from puck_tables.world.layout import (
     EDGE_NUMBER,
-    INVERSE_INERTIA,
-    INVERSE_MASS,
+    INV_INERTIA,
+    INV_MASS,
     KIND,
     LIES,
     OVERHANG,
@@ -230,10 +230,10 @@ def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
             state[X] + h * state[VX], state[Y] + h * state[VY], state[THETA] + h * state[SPIN]
         )  # fmt: skip
         state[VX], state[VY] = (
-            state[VX] + h * disc[INVERSE_MASS] * fx,
-            state[VY] + h * disc[INVERSE_MASS] * fy,
+            state[VX] + h * disc[INV_MASS] * fx,
+            state[VY] + h * disc[INV_MASS] * fy,
         )
-        state[SPIN] += h * disc[INVERSE_INERTIA] * torque
+        state[SPIN] += h * disc[INV_INERTIA] * torque
         passed = rows_passed(rows, 0, len(rows), t + h)
         friction = friction_now(
             engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t + h, state
@@ -306,7 +306,7 @@ def _work(
     """
     disc, state = engine.discs[i], room.states[i]
     turn = disc[RADIUS] * rub
-    if disc[INVERSE_MASS] > 0.0:
+    if disc[INV_MASS] > 0.0:
         event[LED] += work_of_hold(disc, engine.surface, state, px, py, turn)
     else:
         event[GOT] -= px * state[VX] + py * state[VY] + turn * state[SPIN]

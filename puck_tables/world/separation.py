@@ -20,7 +20,7 @@ from puck_tables.scene.forces import per_change, per_speed
 from puck_tables.scene.friction import SPIN, VX, VY, friction_force, size
 from puck_tables.scene.ingredients import DryFriction
 from puck_tables.world.engine_state import Engine
-from puck_tables.world.layout import DECEL, DRAG, INVERSE_MASS, RADIUS, REGION
+from puck_tables.world.layout import DECEL, DRAG, INV_MASS, RADIUS, REGION
 from puck_tables.world.paths import DURATION, START, jerk_on, on_piece, piece_at
 from puck_tables.world.segment import (
     DAMPED,
@@ -70,7 +70,7 @@ def _knows(
         regions.load[row], regions.delta[row], regions.limits[row], regions.by_speed
     )
     fx, fy, _, _ = friction_force(friction, disc[RADIUS], vx, vy, state[SPIN])
-    decel, light = disc[DECEL], disc[INVERSE_MASS]
+    decel, light = disc[DECEL], disc[INV_MASS]
     jerk = _JERK * decel * decel * math.hypot(vx, vy) / slip / slip
     return light * fx, light * fy, jerk, _HALF * slip / decel
 

@@ -19,7 +19,7 @@ from puck_tables.world.layout import (
     DECEL,
     EDGE,
     HOLD,
-    INVERSE_MASS,
+    INV_MASS,
     KIND,
     OVERHANG,
     POCKET,
@@ -71,7 +71,7 @@ _ROUNDS = 8  # of contacts that approach as others are stopped, at most
 @inlined
 def _moves(engine: Engine, room: Room, i: int) -> bool:
     """Whether it is a disc that gives way: the floor holds none that is at rest."""
-    if i < 0 or engine.discs[i, INVERSE_MASS] == 0.0:
+    if i < 0 or engine.discs[i, INV_MASS] == 0.0:
         return False
     disc = engine.discs[i]
     steep = engine.surface.static * disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
@@ -159,7 +159,7 @@ def go_on(engine: Engine, t: float, count: int, room: Room) -> int:
 @inlined
 def _depth_in(obstacle: FloatArray, disc: FloatArray, x: float, y: float) -> float:
     """How deep a disc would lie in what stands, or in a hole, m; at most 0: not at all."""
-    shape, driven = int(obstacle[KIND]), disc[INVERSE_MASS] == 0.0
+    shape, driven = int(obstacle[KIND]), disc[INV_MASS] == 0.0
     if shape >= OVERHANG or (driven and shape in (POCKET, EDGE)):
         return 0.0
     gap, _, _, there = normal_to(obstacle, disc[RADIUS], x, y, 0.0)
@@ -227,7 +227,7 @@ def _put_down(engine: Engine, i: int, what: int, t: float, moved: bool, room: Ro
 def _is_unseen(engine: Engine, i: int, swift: bool, state: FloatArray) -> bool:
     """Whether a state of a disc, if ``swift`` with another velocity, asks for more than a look."""
     disc = engine.discs[i]
-    if disc[HOLD] != FREE or disc[INVERSE_MASS] == 0.0:
+    if disc[HOLD] != FREE or disc[INV_MASS] == 0.0:
         return True
     if moves_along(engine.surface) or law_goes_to(engine.regions) < math.inf:
         return True

@@ -38,7 +38,7 @@ from puck_tables.world.agreement import segment_error, steps_for
 from puck_tables.world.floor_under import moves_along
 from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import at_rest_below
-from puck_tables.world.layout import HOLD, INVERSE_INERTIA, INVERSE_MASS, NORMAL
+from puck_tables.world.layout import HOLD, INV_INERTIA, INV_MASS, NORMAL
 from puck_tables.world.ledger import energies_of, energy_scale
 from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.plan import plan_of
@@ -118,13 +118,13 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
     cosine, sine = scale * math.cos(share), scale * math.sin(share)
     turned = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, scale]])
     launches[:, g.LAUNCH_VX :] = launches[:, g.LAUNCH_VX :] @ turned.T
-    free = (engine.discs[:, INVERSE_MASS] > 0.0) & (engine.discs[:, HOLD] == FREE)
+    free = (engine.discs[:, INV_MASS] > 0.0) & (engine.discs[:, HOLD] == FREE)
     floor = velocities_under(engine, states)[free]
     states[free, VX:] = floor + (states[free, VX:] - floor) @ turned.T
     engine.scale[2] *= coarser
     engine.discs[:, NORMAL] *= 1.0 + friction
     # torques to the other side, by twice as much: all alike hardly change where rebounds lead
-    engine.discs[:, INVERSE_INERTIA] *= 1.0 - 3.0 * friction
+    engine.discs[:, INV_INERTIA] *= 1.0 - 3.0 * friction
     regions = engine.regions._replace(load=engine.regions.load * (1.0 + friction))
     return start._replace(engine=engine._replace(launches=launches, regions=regions), states=states)
 

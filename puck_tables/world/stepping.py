@@ -54,7 +54,7 @@ from puck_tables.world.group_forces import (
     rest_on_floor,
     slip_of,
 )
-from puck_tables.world.layout import INVERSE_INERTIA, INVERSE_MASS, RADIUS, write_over
+from puck_tables.world.layout import INV_INERTIA, INV_MASS, RADIUS, write_over
 from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips
 from puck_tables.world.paths import DURATION, FIRST, START
 from puck_tables.world.pressing import find_break_away, overborne, turn_directions
@@ -220,7 +220,7 @@ def longest_step(group: Group, members: IntArray, motions: IntArray, buffer: Gro
             pull = size(rate[3] - cx, rate[4] - cy, radius * (rate[5] - floor.turn))
             q = slip_of(group, number, y)
             disc = group.discs[number]
-            turns = max(disc[INVERSE_MASS], 0.5 * radius * radius * disc[INVERSE_INERTIA])
+            turns = max(disc[INV_MASS], 0.5 * radius * radius * disc[INV_INERTIA])
             pull = max(pull / _NEAR, load_on(group, number) * turns / _TURN)
             if longest * pull > q:
                 longest = q / pull

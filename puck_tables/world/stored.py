@@ -55,7 +55,7 @@ from puck_tables.world.engine_state import (
 from puck_tables.world.floor_under import law_goes_to
 from puck_tables.world.groups import push_on
 from puck_tables.world.lasting import GOES_ON, ROUND, moves_on, next_target, prescribed_until
-from puck_tables.world.layout import INVERSE_MASS, write_over
+from puck_tables.world.layout import INV_MASS, write_over
 from puck_tables.world.passings import COLUMNS, FROM, LINE, NEXT, SIDE, UNKNOWN, find_passings
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.segment import (
@@ -221,7 +221,7 @@ def _lay_hands_on(what: int, k: int, orders: Orders, bench: Bench) -> None:
             lead(engine, i, state, FOR_EVER)
             engine.next_time[i], engine.next_partner[i] = t, PATH_ENDS
         elif changed or what != ALL_PUT or engine.kinds[i] != GONE:
-            if changed and what in (PLACED, ALL_PUT) and engine.discs[i, INVERSE_MASS] == 0.0:
+            if changed and what in (PLACED, ALL_PUT) and engine.discs[i, INV_MASS] == 0.0:
                 for column in range(6):
                     if row[column] == row[column]:  # not NaN
                         state[column] = row[column]

@@ -39,7 +39,7 @@ from puck_tables.world.by_hand import slips_of
 from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
-from puck_tables.world.layout import HOLD, INVERSE_MASS
+from puck_tables.world.layout import HOLD, INV_MASS
 from puck_tables.world.paths import PIECE_COLUMNS
 from puck_tables.world.prepare import scales_of
 from puck_tables.world.segment_starts import room_for
@@ -152,7 +152,7 @@ class Together:
             new = np.flatnonzero(fastest > scales[:, 0])
             fastest = fastest[new]
         else:
-            known = (own[:, INVERSE_MASS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
+            known = (own[:, INV_MASS] == 0.0) | (law_goes_to(engine.regions) < math.inf)
             new = np.flatnonzero(~(slips_of(own, rows) <= scales[:, :1]).all(axis=1) | known.any())
             now = self._states(slots[new], time[new])[0][:, self._order]
             states = now.copy()

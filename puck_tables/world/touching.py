@@ -21,7 +21,7 @@ from puck_tables.world.floor_under import is_over_belts, outruns_law, over_floor
 from puck_tables.world.layout import (
     DECEL,
     INTEGRATED,
-    INVERSE_MASS,
+    INV_MASS,
     KIND,
     NO_CUSHION,
     PULL_X,
@@ -132,7 +132,7 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
 def sets_off_too_fast(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
     ux, uy, w = over_floor(engine.surface, engine.discs[i], state)
-    free = engine.discs[i, INVERSE_MASS] > 0.0
+    free = engine.discs[i, INV_MASS] > 0.0
     return free and outruns_law(engine.regions, engine.discs[i, RADIUS], ux, uy, w)
 
 

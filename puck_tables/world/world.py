@@ -31,7 +31,7 @@ from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.holds import response
 from puck_tables.world.lasting import refuse_too_fast
-from puck_tables.world.layout import HOLD, INVERSE_MASS, RADIUS
+from puck_tables.world.layout import HOLD, INV_MASS, RADIUS
 from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.paths import FOR_EVER
 from puck_tables.world.prepare import set_scales
@@ -96,7 +96,7 @@ class World(Running):
             If there is no such puck, it is not in play or driven, or a number is not finite.
         """
         i = self._in_play(puck)
-        if self._engine.discs[i, INVERSE_MASS] == 0.0:
+        if self._engine.discs[i, INV_MASS] == 0.0:
             raise InputError(f"{self._name(i)} is driven along its path")
         row = row_of(None, None, velocity, spin)
         if impulse is not None:
@@ -315,7 +315,7 @@ class World(Running):
         [0.75, 1.0]
         """
         i = self._in_play(puck)
-        if self._engine.discs[i, INVERSE_MASS] == 0.0:
+        if self._engine.discs[i, INV_MASS] == 0.0:
             raise InputError(f"{self._name(i)} is driven: no force moves it")
         push = np.append(two_of("force", force, "N"), real("torque", torque, "N m"))
         until = self.time + positive("duration", duration, "s")
@@ -348,7 +348,7 @@ class World(Running):
     def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""
         engine, own = self._engine, self._engine.discs[discs]
-        held, led = own[:, HOLD] != FREE, (own[:, INVERSE_MASS] == 0.0) & (what != g.ADDED)
+        held, led = own[:, HOLD] != FREE, (own[:, INV_MASS] == 0.0) & (what != g.ADDED)
         law = law_goes_to(engine.regions) < math.inf
         sure = not (law or held.any() or led.any() or moves_along(engine.surface))
         if sure and (slips_of(own, rows) <= engine.scale[0]).all():

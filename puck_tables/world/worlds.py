@@ -17,7 +17,7 @@ from puck_tables.world import engine_state as g
 from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.bench import ALL_PUT, LED, LET_GO, REPORT_COLUMNS
 from puck_tables.world.engine_state import Whole
-from puck_tables.world.layout import INVERSE_MASS
+from puck_tables.world.layout import INV_MASS
 from puck_tables.world.running import span_of
 from puck_tables.world.segment import GONE
 from puck_tables.world.together import Together, of_boards
@@ -161,7 +161,7 @@ class Worlds(Together):
         [0.0, 0.0, 1.0]
         """
         i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
-        if self._first._engine.discs[i, INVERSE_MASS] == 0.0:
+        if self._first._engine.discs[i, INV_MASS] == 0.0:
             raise InputError(f"{self.names[self._order[i]]} is driven along its path")
         self._refuse_gone(i, some)
         self._put(g.STRUCK, i, some, self._rows(len(some), None, None, velocity, spin))

@@ -50,11 +50,9 @@ def _film(path: str | Path, head: bytes) -> Film:
         "table of photogates", [], "m", notes=["places along one line, the edges of a flag"]
     )
     rows = [values[name] for name in ("gate 1", "gate 2", "between", "flag", "distance")]
-    for n, (one, two, between, width, distance) in enumerate(
-        np.stack(rows, axis=1).tolist(), start=1
-    ):
+    for n, (one, two, between, width, gap) in enumerate(np.stack(rows, axis=1).tolist(), start=1):
         if np.isfinite([one, two, between]).all():
-            place = np.array([0.0, width, distance, distance + width])
+            place = np.array([0.0, width, gap, gap + width])
             marks = {"": np.stack([place, 0.0 * place], axis=1)}
             time = np.array([0.0, one, between, between + two])
             film.bodies.append(TrackedBody(f"slide {n}", marks, time=time))
