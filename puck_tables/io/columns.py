@@ -232,7 +232,7 @@ COLUMNS = {
     "heading_width": Column("rad", "width of heading", "interval of headings that do"),
     "speed_width": Column("m/s", "width of speed", "interval of launch speeds that do"),
     "spin_width": Column("rad/s", "width of spin", "interval of launch spins that do"),
-    "course": Column("", "course", "impacts that lead the puck to its end"),
+    "sequence": Column("", "sequence", "impacts that lead the puck to its end"),
     "puck": Column("1", "puck", "number of the puck"),
     "name": Column("", "puck", "name of the puck"),
     "in_play": Column("1", "in play", "1 until it falls into a pocket or over an edge"),
