@@ -135,3 +135,13 @@ def test_gaps_and_leaps_are_named():
     assert "2 leaps" in words
     quiet = "\n".join(described(Track(np.arange(40) / 100.0, np.zeros((40, 2)))))
     assert "odd" not in quiet
+
+
+@pytest.mark.parametrize("turns", [0.05, 0.4])  # a frame
+def test_marks_that_are_taken_for_each_other_are_named(turns: float):
+    time = np.arange(40) / 100.0
+    place, angle = np.column_stack([time, 0.0 * time]), 2.0 * np.pi * turns * np.arange(40)
+    assert "marks" not in "\n".join(described(Track(time, place, angle)))
+    angle[[4, 20, 21]] += np.pi
+    words = "\n".join(described(Track(time, place, angle)))
+    assert ("1 angle half a turn off those beside, the first at 0.04 s" in words) == (turns < 0.1)
