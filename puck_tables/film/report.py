@@ -112,9 +112,9 @@ def _turned(track: Track) -> list[str]:
     if track.angle is None:
         return []
     time, angle = track.time[track.seen], np.exp(1j * track.angle[track.seen])
-    beside = angle[2:] + angle[:-2]
-    off = np.flatnonzero((angle[1:-1] * beside.conj()).real < -_OPPOSITE)
-    if not off.size or off.size > _FEW * beside.size:  # fast ones are opposite all along
+    neighbours = angle[2:] + angle[:-2]
+    off = np.flatnonzero((angle[1:-1] * neighbours.conj()).real < -_OPPOSITE)
+    if not off.size or off.size > _FEW * neighbours.size:  # fast ones are opposite all along
         return []
     return [
         f"{counted(off.size, 'angle')} half a turn off those beside, the first at "
