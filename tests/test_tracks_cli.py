@@ -126,6 +126,12 @@ def test_control_characters_in_a_file_never_reach_the_terminal():
     assert "\x1b" not in puck("c.csv", "--unit", "m").output
 
 
+def test_a_mark_where_none_has_a_name():
+    Path("t.csv").write_text("t [s],x [m],y [m]\n0,1,2\n1,2,3\n")
+    result = puck("t.csv", "--centre", "red")
+    assert "t.csv has no mark 'red'. Its marks: none with a name" in result.output
+
+
 def test_gaps_and_leaps_are_named():
     time = np.concatenate([np.arange(20), np.arange(30, 50)]) / 100.0
     place = np.column_stack([time, np.zeros(40)])

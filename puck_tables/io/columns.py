@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.safe_write import as_utf8
+from puck_tables._core.wording import meant
 
 
 @dataclass(frozen=True)
@@ -364,4 +365,5 @@ def following(result: Any, name: str) -> Any:
             raise AttributeError
         return column.by(*(getattr(result, one) for one in column.of))
     except AttributeError:
-        raise AttributeError(f"{type(result).__name__} has no {name}") from None
+        near = meant(name, result.__dict__.get("columns", ()))
+        raise AttributeError(f"{type(result).__name__} has no {name}{near}") from None
