@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -60,11 +60,12 @@ class Spread(ABC):
     def _widths(self) -> tuple[float, float]:
         """Its standard deviation, or its width; the other 0."""
 
-    def _read(self, names: tuple[str, str], values: tuple[Any, Any]) -> tuple[float, float]:
-        """Its two numbers, of which the unit is noted if they have one."""
+    def _read(self, **names: str) -> None:
+        """Its two numbers, by what they are called; the unit is noted if they have one."""
+        values = tuple(getattr(self, one) for one in names)
         if any(isinstance(one, str) for one in values):
             kinds = [measured_kinds(one) if isinstance(one, str) else {} for one in values]
-            for name, one, kind in zip(names, values, kinds, strict=True):
+            for name, one, kind in zip(names.values(), values, kinds, strict=True):
                 if kind or (not isinstance(one, str) and real(f"the {name}", one, "") == 0.0):
                     continue
                 why = unit_meant(str(one)[:40]) or "give both a unit, as '25mm', or neither"
@@ -74,12 +75,9 @@ class Spread(ABC):
                 what = f"may be in {' or '.join(both)}" if both else "are of two kinds"
                 raise InputError(f"{values[0]!r} and {values[1]!r} {what}: write SI units")
             object.__setattr__(self, "unit", both[0])
-            values = tuple(kind.get(both[0], 0.0) for kind in kinds)  # type: ignore[assignment]
-        first, second = (
-            real(f"the {name}", one, "in the unit of the number")
-            for name, one in zip(names, values, strict=True)
-        )
-        return first, second
+            values = tuple(kind.get(both[0], 0.0) for kind in kinds)
+        for (own, name), one in zip(names.items(), values, strict=True):
+            object.__setattr__(self, own, real(f"the {name}", one, "in the unit of the number"))
 
     @abstractmethod
     def of(self, uniform: FloatArray) -> FloatArray:
@@ -131,15 +129,12 @@ class Normal(Spread):
     deviation: float
 
     def __post_init__(self) -> None:
-        names = ("mean of a normal spread", "deviation of a normal spread")
-        mean, deviation = self._read(names, (self.mean, self.deviation))
-        if not deviation > 0.0:
+        self._read(mean="mean of a normal spread", deviation="deviation of a normal spread")
+        if not self.deviation > 0.0:
             raise InputError(
-                f"the deviation of a normal spread must be greater than 0, got {deviation:g}: "
+                f"the deviation of a normal spread must be greater than 0, got {self.deviation:g}: "
                 "give the number alone to hold it fixed"
             )
-        object.__setattr__(self, "mean", mean)
-        object.__setattr__(self, "deviation", deviation)
 
     def of(self, uniform: FloatArray) -> FloatArray:
         """Its quantiles."""
@@ -178,15 +173,12 @@ class Uniform(Spread):
     high: float
 
     def __post_init__(self) -> None:
-        names = ("low end of a uniform spread", "high end of a uniform spread")
-        low, high = self._read(names, (self.low, self.high))
-        if not (high > low and high - low < float("inf")):
+        self._read(low="low end of a uniform spread", high="high end of a uniform spread")
+        if not 0.0 < self.high - self.low < float("inf"):
             raise InputError(
-                f"a uniform spread must go from a lower to a higher end, got {low:g} to {high:g}: "
-                "give the number alone to hold it fixed"
+                f"a uniform spread must go from a lower to a higher end, got {self.low:g} to "
+                f"{self.high:g}: give the number alone to hold it fixed"
             )
-        object.__setattr__(self, "low", low)
-        object.__setattr__(self, "high", high)
 
     def of(self, uniform: FloatArray) -> FloatArray:
         """Its quantiles."""

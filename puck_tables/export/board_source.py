@@ -32,7 +32,6 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world import setting_off
 from puck_tables.world.bench import LACKS_PIECES, LED, LET_GO, REPORT_COLUMNS
-from puck_tables.world.engine_state import EVENTS
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS
 from puck_tables.world.layout import INV_MASS, RADIUS
 from puck_tables.world.paths import PIECE_COLUMNS
@@ -351,7 +350,7 @@ def _described(ship: Shipped, board: Worlds) -> dict[str, Any]:
         "title": board.scene.title, "parts": tables_of(board.scene), "pucks": board.names,
         "order": ship.bench.order.tolist(),
         "radii": radii.tolist(), "driven": driven.tolist(), "obstacles": board._first._obstacles,
-        "lines": lines_of(board), "events": EVENTS, "fastest": float(ship.limits[FASTEST]),
+        "lines": lines_of(board), "events": g.EVENTS, "fastest": float(ship.limits[FASTEST]),
         "failures": FAILURES, "codes": CODES, "layout": sizes_of(ship), "arrays": [*named(ship)],
     }  # fmt: skip
 

@@ -15,7 +15,6 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import engine_state as g
 from puck_tables.world.contact_row import FIRST_N, E
 from puck_tables.world.engine import NOBODY, THOSE_LEFT, advance, lacks_rows
-from puck_tables.world.engine_state import Whole
 from puck_tables.world.lasting import with_law_for
 from puck_tables.world.layout import EDGE, KIND, POCKET
 from puck_tables.world.lone import LONGEST
@@ -46,8 +45,8 @@ class Playing:
     names: tuple[str, ...]
     _engine: g.Engine
     _room: Room
-    _order: Whole
-    _place: Whole
+    _order: g.Whole
+    _place: g.Whole
     _obstacles: list[str]
     _entry: tuple[Any, Any] = None, None  # an engine, and what advances just that
 

@@ -28,7 +28,6 @@ from puck_tables.scene.friction import SPIN, X, Y
 from puck_tables.scene.ingredients import FREE, NO_DIRECTION, SLIDES, Phase
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.parts import Floor
-from puck_tables.world import engine_state as g
 from puck_tables.world.engine_state import (
     IMPACT,
     N_EVENTS,
@@ -196,7 +195,7 @@ def _end_of(engine: Engine, segment: int) -> float:
     return float(later[own[0], 2 + START]) if own.size else math.inf
 
 
-def rests_of(engine: g.Engine) -> list[Rest]:
+def rests_of(engine: Engine) -> list[Rest]:
     """Every stick and slip until now; what an impact or a launch sets off is no slip."""
     rests: list[Rest] = []
     for rest in _described(engine):
@@ -207,7 +206,7 @@ def rests_of(engine: g.Engine) -> list[Rest]:
     return rests
 
 
-def _described(engine: g.Engine) -> list[Rest]:
+def _described(engine: Engine) -> list[Rest]:
     """Every stick and slip until now, also a rest that ends at once, disc by disc."""
     discs, ends, states = segments_of(engine)
     segments, kinds = engine.history[: len(discs), 2:], engine.history[: len(discs), 1]
@@ -250,9 +249,7 @@ def _described(engine: g.Engine) -> list[Rest]:
     ]
 
 
-def slips_over(
-    engine: g.Engine, discs: g.Whole, states: FloatArray, times: FloatArray
-) -> FloatArray:
+def slips_over(engine: Engine, discs: Whole, states: FloatArray, times: FloatArray) -> FloatArray:
     """How fast the rims of discs (n,) slip over the floor at states (n, …, 6) and times, m/s."""
     slips, count = np.empty(states.shape[:-1]), len(discs)
     _fill_slips(
@@ -264,7 +261,7 @@ def slips_over(
 
 @kernel
 def _fill_slips(
-    engine: g.Engine, discs: g.Whole, states: FloatArray, times: FloatArray, out: FloatArray
+    engine: Engine, discs: Whole, states: FloatArray, times: FloatArray, out: FloatArray
 ) -> None:
     for n in range(states.shape[0]):
         for k in range(states.shape[1]):

@@ -36,7 +36,6 @@ from puck_tables.world.bench import (
     lay_out,
 )
 from puck_tables.world.by_hand import slips_of
-from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.lasting import longest_of
 from puck_tables.world.layout import HOLD, INV_MASS
@@ -83,7 +82,7 @@ class Together:
         """Refuse more boards than memory has room for."""
         check_memory((2 * n + 1,), 8 * self._columns, "ask for fewer boards", f"{n} boards")
 
-    def _copied(self, some: Whole) -> Self:
+    def _copied(self, some: g.Whole) -> Self:
         """Boards of their own that go on as some of these are."""
         count, old = len(some), self._store
         if count == 0:
@@ -100,8 +99,8 @@ class Together:
         return other
 
     def _do(
-        self, what: int, some: Whole, alone: Callable[[World, int], Any], span: float,
-        rows: FloatArray | None = None, discs: Whole | None = None, anew: bool = False,
+        self, what: int, some: g.Whole, alone: Callable[[World, int], Any], span: float,
+        rows: FloatArray | None = None, discs: g.Whole | None = None, anew: bool = False,
     ) -> None:  # fmt: skip
         """Do it on boards, together or ``alone``, as a whole or not at all."""
         count, n = len(some), self._n
@@ -139,7 +138,7 @@ class Together:
             self._apart = {slot: one for slot, one in self._apart.items() if slot in still} | apart
 
     def _quicken(
-        self, what: int, rows: FloatArray, discs: Whole, slots: Whole, time: FloatArray,
+        self, what: int, rows: FloatArray, discs: g.Whole, slots: g.Whole, time: FloatArray,
         scales: FloatArray,
     ) -> None:  # fmt: skip
         """Scales that hold for what a hand gives, too: as World sets them, to the bit."""
@@ -262,12 +261,12 @@ class Together:
             rows = _ROWS + 2 * len(bench.engine.events)
             return bench, np.empty((rows, REPORT_COLUMNS))
 
-    def _kinds(self, slots: Whole) -> Whole:
+    def _kinds(self, slots: g.Whole) -> g.Whole:
         """Of the segments of all discs of boards, (slots, discs)."""
         return self._store.whole[slots, : len(self.names)]
 
     def _states(
-        self, slots: Whole, times: FloatArray
+        self, slots: g.Whole, times: FloatArray
     ) -> tuple[FloatArray, npt.NDArray[np.bool_]]:  # fmt: skip
         """States of boards, and which pucks move."""
         states = np.empty((len(slots), len(self.names), 6))

@@ -27,7 +27,6 @@ from puck_tables.world.by_hand import (
     with_force,
     with_room_to_lead,
 )
-from puck_tables.world.engine_state import Whole
 from puck_tables.world.floor_under import law_goes_to, moves_along
 from puck_tables.world.holds import response
 from puck_tables.world.lasting import refuse_too_fast
@@ -331,7 +330,7 @@ class World(Running):
         if not np.hypot(state[VX], state[VY]) <= self._engine.scale[0]:
             set_scales(self._engine, np.zeros((len(self.names), 6)))
 
-    def _put(self, what: int, rows: FloatArray, discs: int | slice | Whole) -> None:
+    def _put(self, what: int, rows: FloatArray, discs: int | slice | g.Whole) -> None:
         """Give discs their states, NaN: as it is, by an event; all or nothing."""
         room, by_hand = self._room, what in (g.STRUCK, g.PLACED, g.ADDED)
         with self._or_as_before():
@@ -345,7 +344,7 @@ class World(Running):
                 numbers = np.atleast_1d(np.arange(len(self.names))[discs])
                 self._see_to(what, np.atleast_2d(rows), numbers)
 
-    def _see_to(self, what: int, rows: FloatArray, discs: Whole) -> None:
+    def _see_to(self, what: int, rows: FloatArray, discs: g.Whole) -> None:
         """Refuse what does not fit, see to the scales, and lead what is led from there."""
         engine, own = self._engine, self._engine.discs[discs]
         held, led = own[:, HOLD] != FREE, (own[:, INV_MASS] == 0.0) & (what != g.ADDED)

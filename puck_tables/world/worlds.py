@@ -16,7 +16,6 @@ from puck_tables.scene.run import Event, number_of
 from puck_tables.world import engine_state as g
 from puck_tables.world.agreement import refuse_endless
 from puck_tables.world.bench import ALL_PUT, LED, LET_GO, REPORT_COLUMNS
-from puck_tables.world.engine_state import Whole
 from puck_tables.world.layout import INV_MASS
 from puck_tables.world.running import span_of
 from puck_tables.world.segment import GONE
@@ -331,7 +330,7 @@ class Worlds(Together):
             self._at[some], self._described = 2 * self._n, []
             self.time = np.where(np.isin(np.arange(self._n), some), 0.0, self.time)
 
-    def _set(self, states: npt.ArrayLike, some: Whole, anew: bool) -> None:
+    def _set(self, states: npt.ArrayLike, some: g.Whole, anew: bool) -> None:
         """Put the pucks of boards into states, as they are or at their start."""
         rows = finite_array("states", states, "m, rad, m/s, rad/s")
         each, one = (len(some), len(self.names), 6), (len(self.names), 6)
@@ -342,7 +341,7 @@ class Worlds(Together):
         self._do(ALL_PUT, some, lambda world, k: world.set_state(rows[k]), 0.0,
                  rows[:, self._order].copy(), np.arange(len(self.names)), anew)  # fmt: skip
 
-    def _some(self, boards: Boards, again: bool = False) -> Whole:
+    def _some(self, boards: Boards, again: bool = False) -> g.Whole:
         """The numbers of boards, which come once if not ``again``."""
         if boards is None:
             return np.arange(self._n)
@@ -360,7 +359,7 @@ class Worlds(Together):
         raise InputError(f"boards must be numbers from 0 to {self._n - 1}{once}, or a mask of "
                          f"{self._n}, got {shown(boards)}")  # fmt: skip
 
-    def _put(self, what: int, i: int, some: Whole, rows: FloatArray) -> None:
+    def _put(self, what: int, i: int, some: g.Whole, rows: FloatArray) -> None:
         """Give a disc states (boards, 1, 6), NaN: as it is, by an event."""
         self._do(what, some, lambda world, k: world._put(what, rows[k, 0], i), 0.0, rows,
                  np.array([i]))  # fmt: skip
@@ -378,7 +377,7 @@ class Worlds(Together):
             rows[:, 0, SPIN] = self._each("spin", spin, "rad/s", count)
         return rows
 
-    def _refuse_gone(self, i: int, some: Whole) -> None:
+    def _refuse_gone(self, i: int, some: g.Whole) -> None:
         """Refuse boards where a disc has left play."""
         gone = some[self._kinds(self._at[some])[:, i] == GONE].tolist()
         if gone:
