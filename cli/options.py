@@ -129,11 +129,12 @@ class PuckChoice:
 
     @property
     def note(self) -> str:
-        """What is said where nothing of it was chosen, or no friction."""
-        chosen = not_none(asdict(self))
-        if self.base is not None and not {"friction", "decel"} & {*chosen}:
-            return "f g is a default: give --friction."
-        if len(chosen) > 1:
+        """What is said where nothing of it was chosen, or its size without friction."""
+        chosen = {*not_none(asdict(self))}
+        if chosen & {"radius", "base"} and not chosen & {"friction", "decel"}:
+            more = "" if self.base else " and --height, or --decel"
+            return f"f g is a default: give --friction{more}."
+        if chosen - {"pressure", "mass"}:
             return ""
         return "The puck is a default one: --help says how to give a real one."
 

@@ -22,7 +22,7 @@ from puck_tables.accuracy.methods import INTEGRATORS, method_named
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset, variable
 from puck_tables.motion.base_slides import BaseSlide, slide_of
-from puck_tables.motion.body import UnitPuck, body_of
+from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.friction_source import source_of
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.motion.state import LENGTH, PSI, THETA, T, U, X, Y
@@ -218,8 +218,8 @@ def simulate(
     _check_frames(frames, times)
     frame = frame_of(launch, w, puck.decel, puck.radius)
     body = puck.body
-    if table is not None and not body.has_closed_forms:
-        body = body_of(puck.pressure, puck.delta, puck.gyration, table)
+    if not body.has_closed_forms:
+        body = body.with_table(table)
     energy = 0.5 * puck.mass * (frame.speed * frame.speed + body.inertia * frame.rim * frame.rim)
     _refuse_too_large(frame, body, energy, puck.decel)
 

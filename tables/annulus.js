@@ -1,6 +1,6 @@
 /* puck-tables 0.1.0: stop, state, resultants of flat pucks that slide and spin under dry friction.
-JavaScript; error 1e-06 (see each function); pressure annulus:0.8, k/r = 0.905539,
-0 <= delta <= 1.64.
+JavaScript; error 1e-06 (see each function);
+pressure annulus:0.8, k/r = 0.905539, 0 <= delta <= 1.64.
 Functions: stop, state, turn, resultants; self_test returns how many numbers of its vectors are
 missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.
 
@@ -303,7 +303,7 @@ const STOP = new Float64Array([
 599,-9,9,-11,-1,-44,1]);
 const STOP_ROWS = new Float64Array([
 0,35,65,77,89,118,144]);
-const ORBIT = new Float64Array([
+const MOTION = new Float64Array([
 7957296,46673,206,694,-86,-13,16,0,-3,0,0,0,7853387,-4023,-18,-60,7,1,-1,0,0,0,0,0,7852158,
 -4627,-20,-69,9,1,-2,0,0,0,0,0,7960962,48477,212,720,-90,-13,16,0,-3,0,1,0,8186277,159362,645,
 2528,-331,-44,60,0,-11,0,2,0,8532391,332001,993,5777,-798,-96,145,2,-26,0,4,0,8998332,568776,
@@ -356,13 +356,13 @@ const ORBIT = new Float64Array([
 947,10041,-42,-321,4,6,12632,58858,328,10815,-14,-329,1,5,2872,60186,75,11111,-3,-332,0,5,388,
 60523,10,11187,0,-333,0,5,24,60572,1,11198,0,-333,0,5,0,60576,0,11198,0,-333,0,5,0,60576,0,
 11198,0,-333,0,5,0,60576,0,11198,0,-333,0,5,1,60576,0,11198,0,-333,0,5]);
-const ORBIT_ROWS = new Float64Array([
+const MOTION_ROWS = new Float64Array([
 0,372,508,844]);
-const ORBIT_CELLS = new Float64Array([
+const MOTION_CELLS = new Float64Array([
 27,13,24,13]);
-const ORBIT_POWERS = new Float64Array([
+const MOTION_POWERS = new Float64Array([
 6,4,6,4]);
-const ORBIT_QUANTA = new Float64Array([
+const MOTION_QUANTA = new Float64Array([
 5.3e-9,1e-8,6.7e-9,6.5e-9]);
 const CONSTANTS = new Float64Array([
 25200936,-140040,21319,-3245,512,-78,0,0,0,0,0,0,55555556,0,0,0,0,0,301250213,51249945,0,0,0,0,
@@ -499,9 +499,9 @@ function constant(row, s) {
 	return CONSTANTS_QUANTUM * total;
 }
 function limit_motion_at(branch, xi, s, out_row) {
-	let powers = ORBIT_POWERS[branch];
-	look_up(ORBIT, ORBIT_ROWS[branch], ORBIT_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
-			ORBIT_QUANTA[branch], xi, s, out_row);
+	let powers = MOTION_POWERS[branch];
+	look_up(MOTION, MOTION_ROWS[branch], MOTION_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
+			MOTION_QUANTA[branch], xi, s, out_row);
 }
 function heading_of(xi) {
 	let x = END * xi;
@@ -714,8 +714,9 @@ function resultants_misses() {
 	const out = resultants_misses_out;
 	let missed = 0;
 	for (let n = 0; n < 10; n++) {
-		missed += resultants(c[n * 5], c[n * 5 + 1], out);
-		for (let j = 0; j < 3; j++) missed += misses(out[j], c[n * 5 + 2 + j], 1.0);
+		let k = n * 5;
+		missed += resultants(c[k], c[k + 1], out);
+		for (let j = 0; j < 3; j++) missed += misses(out[j], c[k + 2 + j], 1.0);
 	}
 	return missed;
 }
@@ -727,13 +728,15 @@ function turn_misses() {
 	for (let n = 0; n < 3; n++) {
 		let k = n * 7;
 		missed += turn(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], out);
-		missed += misses(out[0], c[k + 6], 1.0);
+		for (let j = 0; j < 1; j++) missed += misses(out[j], c[k + 6 + j], 1.0);
 	}
 	return missed;
 }
-function slip_of(launch, k) {
-	let edge = launch[k + 5] * launch[k + 2];
-	return Math.sqrt(launch[k] * launch[k] + launch[k + 1] * launch[k + 1] + edge * edge);
+function stop_unit(c, k, j) {
+	let edge = c[k + 5] * c[k + 2];
+	let slip = Math.sqrt(c[k] * c[k] + c[k + 1] * c[k + 1] + edge * edge);
+	let unit = slip / c[k + 4] * (j == 0 ? 1.0 : slip);
+	return j == 4 ? unit / c[k + 5] : unit;
 }
 const stop_misses_out = new Float64Array(5);
 function stop_misses() {
@@ -743,13 +746,13 @@ function stop_misses() {
 	for (let n = 0; n < 12; n++) {
 		let k = n * 11;
 		missed += stop(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], out);
-		let slip = slip_of(c, k);
-		for (let j = 0; j < 5; j++) {
-			let unit = slip / c[k + 4] * (j == 0 ? 1.0 : slip);
-			missed += misses(out[j], c[k + 6 + j], j == 4 ? unit / c[k + 5] : unit);
-		}
+		for (let j = 0; j < 5; j++) missed += misses(out[j], c[k + 6 + j], stop_unit(c, k, j));
 	}
 	return missed;
+}
+function state_unit(c, k, j) {
+	let unit = j < 3 ? stop_unit(c, k, 1) : stop_unit(c, k, 0) * c[k + 4];
+	return j == 2 || j == 5 ? unit / c[k + 5] : unit;
 }
 const state_misses_out = new Float64Array(6);
 function state_misses() {
@@ -759,12 +762,7 @@ function state_misses() {
 	for (let n = 0; n < 13; n++) {
 		let k = n * 13;
 		missed += state(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6], out);
-		let slip = slip_of(c, k);
-		for (let j = 0; j < 6; j++) {
-			let unit = j < 3 ? slip / c[k + 4] * slip : slip;
-			unit = j == 2 || j == 5 ? unit / c[k + 5] : unit;
-			missed += misses(out[j], c[k + 7 + j], unit);
-		}
+		for (let j = 0; j < 6; j++) missed += misses(out[j], c[k + 7 + j], state_unit(c, k, j));
 	}
 	return missed;
 }

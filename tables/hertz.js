@@ -1,6 +1,6 @@
 /* puck-tables 0.1.0: stop, state, resultants of flat pucks that slide and spin under dry friction.
-JavaScript; error 1e-06 (see each function); pressure hertz, k/r = 0.632456,
-0 <= delta <= 0.8.
+JavaScript; error 1e-06 (see each function);
+pressure hertz, k/r = 0.632456, 0 <= delta <= 0.8.
 Functions: stop, state, turn, resultants; self_test returns how many numbers of its vectors are
 missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.
 
@@ -186,7 +186,7 @@ const STOP = new Float64Array([
 -234,-23,3,4,0,8,0]);
 const STOP_ROWS = new Float64Array([
 0,21,40,59,78]);
-const ORBIT = new Float64Array([
+const MOTION = new Float64Array([
 5262233,22149,25,271,-41,1,4,0,0,0,5203708,-1900,-2,-23,4,0,0,0,0,0,5202953,-2212,-3,-27,4,0,0,
 0,0,0,5264500,23079,26,282,-43,1,4,0,0,0,5391459,74910,-46,935,-147,1,14,0,-1,0,5585403,152757,
 -547,1954,-321,1,29,0,-3,0,5846102,253967,-2082,3302,-585,-3,51,0,-4,0,6171123,373333,-5550,
@@ -243,13 +243,13 @@ const ORBIT = new Float64Array([
 129814,9,55067,2,812,0,-162,0,20,32,129814,2,55069,0,813,0,-162,0,20,4,129814,0,55069,0,813,0,
 -162,0,20,0,129814,0,55069,0,813,0,-162,0,20,0,129814,0,55069,0,813,0,-162,0,20,-1,129814,0,
 55069,0,813,0,-162,0,20]);
-const ORBIT_ROWS = new Float64Array([
+const MOTION_ROWS = new Float64Array([
 0,290,638,838]);
-const ORBIT_CELLS = new Float64Array([
+const MOTION_CELLS = new Float64Array([
 25,25,16,26]);
-const ORBIT_POWERS = new Float64Array([
+const MOTION_POWERS = new Float64Array([
 5,6,5,5]);
-const ORBIT_QUANTA = new Float64Array([
+const MOTION_QUANTA = new Float64Array([
 8e-9,6.7e-9,6.4e-9,8e-9]);
 const CONSTANTS = new Float64Array([
 143193280,-6099591,852218,-122687,18113,-2849,440,0,0,0,0,0,0,0,321596640,-3049796,426109,
@@ -387,9 +387,9 @@ function constant(row, s) {
 	return CONSTANTS_QUANTUM * total;
 }
 function limit_motion_at(branch, xi, s, out_row) {
-	let powers = ORBIT_POWERS[branch];
-	look_up(ORBIT, ORBIT_ROWS[branch], ORBIT_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
-			ORBIT_QUANTA[branch], xi, s, out_row);
+	let powers = MOTION_POWERS[branch];
+	look_up(MOTION, MOTION_ROWS[branch], MOTION_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
+			MOTION_QUANTA[branch], xi, s, out_row);
 }
 function heading_of(xi) {
 	let x = END * xi;
@@ -602,8 +602,9 @@ function resultants_misses() {
 	const out = resultants_misses_out;
 	let missed = 0;
 	for (let n = 0; n < 10; n++) {
-		missed += resultants(c[n * 5], c[n * 5 + 1], out);
-		for (let j = 0; j < 3; j++) missed += misses(out[j], c[n * 5 + 2 + j], 1.0);
+		let k = n * 5;
+		missed += resultants(c[k], c[k + 1], out);
+		for (let j = 0; j < 3; j++) missed += misses(out[j], c[k + 2 + j], 1.0);
 	}
 	return missed;
 }
@@ -615,13 +616,15 @@ function turn_misses() {
 	for (let n = 0; n < 3; n++) {
 		let k = n * 7;
 		missed += turn(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], out);
-		missed += misses(out[0], c[k + 6], 1.0);
+		for (let j = 0; j < 1; j++) missed += misses(out[j], c[k + 6 + j], 1.0);
 	}
 	return missed;
 }
-function slip_of(launch, k) {
-	let edge = launch[k + 5] * launch[k + 2];
-	return Math.sqrt(launch[k] * launch[k] + launch[k + 1] * launch[k + 1] + edge * edge);
+function stop_unit(c, k, j) {
+	let edge = c[k + 5] * c[k + 2];
+	let slip = Math.sqrt(c[k] * c[k] + c[k + 1] * c[k + 1] + edge * edge);
+	let unit = slip / c[k + 4] * (j == 0 ? 1.0 : slip);
+	return j == 4 ? unit / c[k + 5] : unit;
 }
 const stop_misses_out = new Float64Array(5);
 function stop_misses() {
@@ -631,13 +634,13 @@ function stop_misses() {
 	for (let n = 0; n < 12; n++) {
 		let k = n * 11;
 		missed += stop(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], out);
-		let slip = slip_of(c, k);
-		for (let j = 0; j < 5; j++) {
-			let unit = slip / c[k + 4] * (j == 0 ? 1.0 : slip);
-			missed += misses(out[j], c[k + 6 + j], j == 4 ? unit / c[k + 5] : unit);
-		}
+		for (let j = 0; j < 5; j++) missed += misses(out[j], c[k + 6 + j], stop_unit(c, k, j));
 	}
 	return missed;
+}
+function state_unit(c, k, j) {
+	let unit = j < 3 ? stop_unit(c, k, 1) : stop_unit(c, k, 0) * c[k + 4];
+	return j == 2 || j == 5 ? unit / c[k + 5] : unit;
 }
 const state_misses_out = new Float64Array(6);
 function state_misses() {
@@ -647,12 +650,7 @@ function state_misses() {
 	for (let n = 0; n < 13; n++) {
 		let k = n * 13;
 		missed += state(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6], out);
-		let slip = slip_of(c, k);
-		for (let j = 0; j < 6; j++) {
-			let unit = j < 3 ? slip / c[k + 4] * slip : slip;
-			unit = j == 2 || j == 5 ? unit / c[k + 5] : unit;
-			missed += misses(out[j], c[k + 7 + j], unit);
-		}
+		for (let j = 0; j < 6; j++) missed += misses(out[j], c[k + 7 + j], state_unit(c, k, j));
 	}
 	return missed;
 }

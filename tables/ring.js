@@ -1,6 +1,6 @@
 /* puck-tables 0.1.0: stop, state, resultants of flat pucks that slide and spin under dry friction.
-JavaScript; error 1e-06 (see each function); pressure ring, k/r = 1,
-0 <= delta <= 2.
+JavaScript; error 1e-06 (see each function);
+pressure ring, k/r = 1, 0 <= delta <= 2.
 Functions: stop, state, turn, resultants; self_test returns how many numbers of its vectors are
 missed: 0.  Needs IEEE arithmetic (no -ffast-math).  Made by a program: do not edit.
 
@@ -289,7 +289,7 @@ const STOP = new Float64Array([
 -77,1,-3,1,0,6,0]);
 const STOP_ROWS = new Float64Array([
 0,35,66,97,128]);
-const ORBIT = new Float64Array([
+const MOTION = new Float64Array([
 2626883,37645,-3255,1402,-244,85,26,-7,-3,0,2602293,-3098,271,-114,20,-7,-2,1,0,0,2601766,-3990,
 339,-151,25,-9,-3,1,0,0,2628469,40327,-3453,1515,-259,91,27,-8,-3,0,2682379,127213,-11885,4346,
 -913,266,96,-24,-9,1,2759877,245356,-25750,7144,-2048,446,214,-42,-19,2,2854050,377133,-45018,
@@ -373,13 +373,13 @@ const ORBIT = new Float64Array([
 -5489,32,304,4,-42,0,7,5,880866,5,157374,3,-5455,2,314,1,-41,0,7,-5,880868,-3,157376,1,-5454,0,
 314,0,-41,0,7,12,880864,9,157373,-1,-5454,-1,314,0,-40,0,7,-91,880889,-76,157395,-1,-5452,7,312,
 1,-41,0,7]);
-const ORBIT_ROWS = new Float64Array([
+const MOTION_ROWS = new Float64Array([
 0,200,800,1000]);
-const ORBIT_CELLS = new Float64Array([
+const MOTION_CELLS = new Float64Array([
 16,46,16,48]);
-const ORBIT_POWERS = new Float64Array([
+const MOTION_POWERS = new Float64Array([
 5,6,5,6]);
-const ORBIT_QUANTA = new Float64Array([
+const MOTION_QUANTA = new Float64Array([
 8e-9,4.3e-9,5.2e-9,6.7e-9]);
 const CONSTANTS = new Float64Array([
 0,0,0,0,0,0,0,-250000000,0,0,0,0,0,0,250000000,0,0,0,0,0,0,312500000,62500000,0,0,0,0,0,
@@ -516,9 +516,9 @@ function constant(row, s) {
 	return CONSTANTS_QUANTUM * total;
 }
 function limit_motion_at(branch, xi, s, out_row) {
-	let powers = ORBIT_POWERS[branch];
-	look_up(ORBIT, ORBIT_ROWS[branch], ORBIT_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
-			ORBIT_QUANTA[branch], xi, s, out_row);
+	let powers = MOTION_POWERS[branch];
+	look_up(MOTION, MOTION_ROWS[branch], MOTION_CELLS[branch], 4, powers > 1 ? powers : 1, 2,
+			MOTION_QUANTA[branch], xi, s, out_row);
 }
 function heading_of(xi) {
 	let x = END * xi;
@@ -731,8 +731,9 @@ function resultants_misses() {
 	const out = resultants_misses_out;
 	let missed = 0;
 	for (let n = 0; n < 10; n++) {
-		missed += resultants(c[n * 5], c[n * 5 + 1], out);
-		for (let j = 0; j < 3; j++) missed += misses(out[j], c[n * 5 + 2 + j], 1.0);
+		let k = n * 5;
+		missed += resultants(c[k], c[k + 1], out);
+		for (let j = 0; j < 3; j++) missed += misses(out[j], c[k + 2 + j], 1.0);
 	}
 	return missed;
 }
@@ -744,13 +745,15 @@ function turn_misses() {
 	for (let n = 0; n < 3; n++) {
 		let k = n * 7;
 		missed += turn(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], out);
-		missed += misses(out[0], c[k + 6], 1.0);
+		for (let j = 0; j < 1; j++) missed += misses(out[j], c[k + 6 + j], 1.0);
 	}
 	return missed;
 }
-function slip_of(launch, k) {
-	let edge = launch[k + 5] * launch[k + 2];
-	return Math.sqrt(launch[k] * launch[k] + launch[k + 1] * launch[k + 1] + edge * edge);
+function stop_unit(c, k, j) {
+	let edge = c[k + 5] * c[k + 2];
+	let slip = Math.sqrt(c[k] * c[k] + c[k + 1] * c[k + 1] + edge * edge);
+	let unit = slip / c[k + 4] * (j == 0 ? 1.0 : slip);
+	return j == 4 ? unit / c[k + 5] : unit;
 }
 const stop_misses_out = new Float64Array(5);
 function stop_misses() {
@@ -760,13 +763,13 @@ function stop_misses() {
 	for (let n = 0; n < 12; n++) {
 		let k = n * 11;
 		missed += stop(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], out);
-		let slip = slip_of(c, k);
-		for (let j = 0; j < 5; j++) {
-			let unit = slip / c[k + 4] * (j == 0 ? 1.0 : slip);
-			missed += misses(out[j], c[k + 6 + j], j == 4 ? unit / c[k + 5] : unit);
-		}
+		for (let j = 0; j < 5; j++) missed += misses(out[j], c[k + 6 + j], stop_unit(c, k, j));
 	}
 	return missed;
+}
+function state_unit(c, k, j) {
+	let unit = j < 3 ? stop_unit(c, k, 1) : stop_unit(c, k, 0) * c[k + 4];
+	return j == 2 || j == 5 ? unit / c[k + 5] : unit;
 }
 const state_misses_out = new Float64Array(6);
 function state_misses() {
@@ -776,12 +779,7 @@ function state_misses() {
 	for (let n = 0; n < 13; n++) {
 		let k = n * 13;
 		missed += state(c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6], out);
-		let slip = slip_of(c, k);
-		for (let j = 0; j < 6; j++) {
-			let unit = j < 3 ? slip / c[k + 4] * slip : slip;
-			unit = j == 2 || j == 5 ? unit / c[k + 5] : unit;
-			missed += misses(out[j], c[k + 7 + j], unit);
-		}
+		for (let j = 0; j < 6; j++) missed += misses(out[j], c[k + 7 + j], state_unit(c, k, j));
 	}
 	return missed;
 }

@@ -33,7 +33,7 @@ def test_a_cut_is_the_ghost_of_the_striker() -> None:
     ghost = red - 2.0 * R * way / np.hypot(*way)
     cut = way @ ghost / np.hypot(*way) / np.hypot(*ghost)
     speed = math.sqrt(2.0 * J * (np.hypot(*ghost) + np.hypot(*way) / cut**2))
-    assert found.courses == ("cue - red",) and found.answer.startswith("1 launch up to")
+    assert found.sequences == ("cue - red",) and found.answer.startswith("1 launch up to")
     assert found.launch_speed[0] == pytest.approx(speed, rel=1e-9)
     assert found.launch_heading[0] == pytest.approx(math.atan2(*ghost[::-1]), abs=1e-9)
     assert found.miss[0] < 1e-9
@@ -59,11 +59,11 @@ def test_a_cushion_is_a_mirror() -> None:
     )
     found = board.aim((0.6, 0.1), max_impacts=1)
     images = {"": (0.6, 0.1), "puck 0 - wall 0": (0.6, 2.0 * (0.5 - R) - 0.1)}
-    assert set(found.courses) == set(images)
-    for course, speed, heading in zip(
-        found.courses, found.launch_speed, found.launch_heading, strict=True
+    assert set(found.sequences) == set(images)
+    for sequence, speed, heading in zip(
+        found.sequences, found.launch_speed, found.launch_heading, strict=True
     ):
-        x, y = images[course]
+        x, y = images[sequence]
         assert speed == pytest.approx(math.sqrt(2.0 * J * math.hypot(x, y)), rel=1e-9)
         assert heading == pytest.approx(math.atan2(y, x), abs=1e-9)
 
@@ -71,7 +71,7 @@ def test_a_cushion_is_a_mirror() -> None:
 def test_the_striker_itself_ends_there_after_it_hit_one() -> None:
     """Equal smooth elastic pucks part at 90 degrees: a carom of the cue."""
     found = two().aim((0.5, 0.25), puck="cue", striker="cue", hits="red")
-    assert len(found) == 1 and found.courses == ("cue - red",)
+    assert len(found) == 1 and found.sequences == ("cue - red",)
     run = found.run(0)
     assert math.dist((run["cue"]["x"][-1], run["cue"]["y"][-1]), (0.5, 0.25)) < 1e-9
     meeting = next(event for event in run.events if event.what == "impact")
@@ -79,7 +79,7 @@ def test_the_striker_itself_ends_there_after_it_hit_one() -> None:
     cue = np.array([0.5, 0.25]) - (np.array([meeting.x, meeting.y]) - R * red / np.hypot(*red))
     assert abs(red @ cue) < 1e-8
     free = two().aim((0.5, 0.25), puck="cue", striker="cue")
-    assert sorted(free.courses) == ["", "cue - red"]  # also past it
+    assert sorted(free.sequences) == ["", "cue - red"]  # also past it
 
 
 def test_a_pocket_has_a_width_and_a_least_speed() -> None:

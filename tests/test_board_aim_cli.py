@@ -31,7 +31,7 @@ def test_a_take_out_is_reported_saved_and_drawn(tmp_path: Path) -> None:
     assert "1 launch up to" in shown.stdout and shown.stdout.rstrip().endswith("red - yellow")
     assert picture.read_bytes().startswith(b"\x89PNG")
     (row,) = csv.DictReader(table.read_text().splitlines())
-    assert row["course"] == "red - yellow" and float(row["miss[m]"]) < 1e-8
+    assert row["sequence"] == "red - yellow" and float(row["miss[m]"]) < 1e-8
     launch = [float(row["launch_vx[m/s]"]), float(row["launch_vy[m/s]"])]
     run = Scene.load("curling-take-out").at({"puck[0].launch.velocity": launch}).simulate()
     ended = run["yellow"]["x"][-1], run["yellow"]["y"][-1]
@@ -41,7 +41,7 @@ def test_a_take_out_is_reported_saved_and_drawn(tmp_path: Path) -> None:
 def test_json_carries_units_and_the_scene() -> None:
     told = json.loads(aim(*CURLING, "--json", "--count", "1").stdout)
     assert told["target"] == [0.5, -0.5] and told["puck"] == "yellow"
-    assert told["units"]["per_degree"] == "m" and told["courses"] == ["red - yellow"]
+    assert told["units"]["per_degree"] == "m" and told["sequences"] == ["red - yellow"]
     assert told["scene"]["puck"][0]["name"] == "red"
 
 

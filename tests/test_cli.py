@@ -54,6 +54,9 @@ def test_the_first_command_says_what_was_assumed():
     assert "a default one: --help" in result.stderr
     assert str(Puck.similar().simulate((1.0, 0.0), 5.0, frames=1)) + "\n" == result.stdout
     assert "defaults" not in invoke("simulate", "--v0", "1,0", "--delta", "0.5").stdout
+    sized = invoke("simulate", "--v0", "1,0", "--radius", "25mm")
+    assert "f g is a default: give --friction and --height, or --decel.\n" in sized.stderr
+    assert "a default one" in invoke("simulate", "--v0", "1,0", "--mass", "0.1").stderr
 
 
 def test_json_is_one_object_with_the_promised_keys():

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import invoke
+from rarely import nightly, thorough
 
 import puck_tables as pt
 from puck_tables.explore.page import LAWS, TOL
@@ -240,8 +241,7 @@ def test_the_look_ups_that_come_along_are_those_that_are_written():
         )
 
 
-@pytest.mark.nightly
-@pytest.mark.parametrize("law", LAWS[1:], ids=lambda one: one.name)
+@pytest.mark.parametrize("law", [*map(nightly, LAWS[1:-1]), thorough(LAWS[-1])])
 def test_they_are_made_again_the_same(law: Any):
     """Number by number but for the last digit, which another machine may round otherwise."""
     puck = pt.Puck(radius=1.0, pressure=law.name, gyration=law.gyration)

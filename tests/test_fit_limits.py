@@ -109,7 +109,7 @@ def far_spun(seed: int) -> pt.Track:
     return pt.Track(times, place + 2e-4 * rng.normal(size=(60, 2)), None, "far")
 
 
-@pytest.mark.parametrize("seed", few(1, [4, *range(4), *range(5, 10)]))
+@pytest.mark.parametrize("seed", few(1, [6, *range(6), *range(7, 10)]))
 def test_a_fit_that_runs_away_is_no_answer(seed, tmp_path):
     """More spin and more friction look alike without end."""
     track = far_spun(seed)
@@ -123,7 +123,7 @@ def test_a_fit_that_runs_away_is_no_answer(seed, tmp_path):
         return
     assert found.astray in " ".join(found.blind) and "runs away" in found.astray
     assert not any(number.determined for number in found.numbers.values() if number.how == "found")
-    with pytest.raises(pt.InputError, match="nothing to simulate"):
+    with pytest.raises(pt.InputError, match="nothing to play"):
         found.simulate()
     found.save(tmp_path / "fit.json")
     with pytest.raises(pt.InputError, match="nothing to play"):

@@ -271,12 +271,17 @@ def test_bad_input_is_one_sentence(n: int):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("action", [[0.0, 0.0], [2.0, 0.0, 0.0], [np.nan, 0.0, 0.0], 1.0, "left"])
-def test_bad_actions_change_nothing(action: Any):
+@pytest.mark.parametrize(("action", "words"), [
+    ([0.0, 0.0], r"have the shape \(1, 3\), got \(1, 2\)"),
+    ([-2.0, 0.0, 0.0], "lie from -1 to 1, got -2"),
+    ([np.nan, 0.0, 0.0], "be finite numbers, got nan"),
+    (1.0, "have the shape"), ("left", "be real numbers"),
+])  # fmt: skip
+def test_bad_actions_change_nothing(action: Any, words: str):
     table = OneTable("Carrom")
     table.reset()
     before = table.many.tables.worlds.state()
-    with pytest.raises(pt.InputError, match="actions must"):
+    with pytest.raises(pt.InputError, match=f"actions must {words}"):
         table.step(action)
     assert np.array_equal(table.many.tables.worlds.state(), before)
     assert table.many.tables.moves.tolist() == [0]

@@ -160,6 +160,8 @@ def test_a_run_is_called_for_its_state_at_any_time():
     np.testing.assert_array_equal(scene.speed, speed)  # type: ignore[attr-defined]
     with pytest.raises(AttributeError, match="no colour"):
         scene.colour  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match="no orientaton \\(did you mean 'orientation'\\?\\)"):
+        scene.orientaton  # type: ignore[attr-defined]  # noqa: B018
 
 
 def test_a_puck_is_a_value():

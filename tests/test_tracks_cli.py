@@ -126,6 +126,12 @@ def test_control_characters_in_a_file_never_reach_the_terminal():
     assert "\x1b" not in puck("c.csv", "--unit", "m").output
 
 
+def test_a_mark_where_none_has_a_name():
+    Path("t.csv").write_text("t [s],x [m],y [m]\n0,1,2\n1,2,3\n")
+    result = puck("t.csv", "--centre", "red")
+    assert "t.csv has no mark 'red'. Its marks: none with a name" in result.output
+
+
 def test_gaps_and_leaps_are_named():
     time = np.concatenate([np.arange(20), np.arange(30, 50)]) / 100.0
     place = np.column_stack([time, np.zeros(40)])
@@ -135,3 +141,13 @@ def test_gaps_and_leaps_are_named():
     assert "2 leaps" in words
     quiet = "\n".join(described(Track(np.arange(40) / 100.0, np.zeros((40, 2)))))
     assert "odd" not in quiet
+
+
+@pytest.mark.parametrize("turns", [0.05, 0.4])  # a frame
+def test_marks_that_are_taken_for_each_other_are_named(turns: float):
+    time = np.arange(40) / 100.0
+    place, angle = np.column_stack([time, 0.0 * time]), 2.0 * np.pi * turns * np.arange(40)
+    assert "marks" not in "\n".join(described(Track(time, place, angle)))
+    angle[[4, 20, 21]] += np.pi
+    words = "\n".join(described(Track(time, place, angle)))
+    assert ("1 angle half a turn off those beside, the first at 0.04 s" in words) == (turns < 0.1)

@@ -516,8 +516,19 @@ def test_trajectories_of_kinovea(tmp_path: Path, motion: Motion):
     one, two = read_tracks(file, unit="cm")
     check(one, motion, digits=1e-6)
     assert two.time.size == 5
-    with pytest.raises(InputError, match="line 4: '1 2 3' is no time"):
-        read_tracks(lines(tmp_path / "b.txt", *head, "1 2 3"), unit="cm")
+    with pytest.raises(InputError, match="line 4: 'a 2 3' is no time"):
+        read_tracks(lines(tmp_path / "b.txt", *head, "a 2 3"), unit="cm")
+
+
+def test_numbers_for_times_and_tables_of_kinovea(tmp_path: Path, motion: Motion):
+    t, place, _ = motion
+    rows = [f"{a:.4f} {100 * x:.4f} {100 * y:.4f}".replace(".", ",")
+            for a, (x, y) in zip(t, place, strict=True)]  # fmt: skip
+    head = ["#Kinovea Trajectory data export", "#T X Y", "", "# Trajectory 1"]
+    check(read_tracks(lines(tmp_path / "a.txt", *head, *rows), unit="cm")[0], motion, digits=1e-6)
+    names = "Time;Trajectory 1/0/X;Trajectory 1/0/Y"
+    table = [row.replace(" ", ";") for row in rows]
+    check(read_tracks(lines(tmp_path / "a.csv", names, *table), unit="cm")[0], motion, digits=1e-6)
 
 
 @pytest.mark.parametrize("form", ["rows", "columns"])

@@ -171,8 +171,8 @@ def test_an_aim_goes_around_the_end_and_off_it() -> None:
     found = pt.Scene(pucks=[cue], walls=[wall, cushion]).aim(
         (0.6, 0.0), striker="cue", max_speed=3.0
     )
-    assert "cue - wall 1" in found.courses and bool((found.miss < 1e-9).all())
-    assert "cue" not in found.courses  # straight it does not get there
+    assert "cue - wall 1" in found.sequences and bool((found.miss < 1e-9).all())
+    assert "cue" not in found.sequences  # straight it does not get there
 
 
 def test_pictures_and_movies_show_all_of_it(board: Path, tmp_path: Path) -> None:

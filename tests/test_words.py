@@ -29,13 +29,13 @@ WORDS = {
     "reel reels tide tides": "prescribed motion, force table",
     "doings concerned disappointed": "body state, contact state, stale",
     "sights beside quiet yielding": "contact kinematics, separation bound, break-away",
-    "lightness turnability slowness": "inverse mass, inverse inertia",
-    "pace paces books works course fate": "scale, ledger, impact sequence, outcome",
+    "lightness turnability slowness slownesses": "inverse mass, inverse inertia",
+    "pace paces books works course courses fate": "scale, ledger, impact sequence, outcome",
     "flight flights departures": "segment, start",
     "carried astride ground zones footing dry": "sticking; mixed; floor, floor map",
     "told curve curves orbit orbits flow flows cut cuts front":
         "explained, similarity solution, coefficients, section, method errors",
-    "tied joined joining chain blow blows bend bends hit hits meeting meetings":
+    "tied joined joining chain chains blow blows bend bends hit hits meeting meetings":
         "coupled fit, impact, kink",
     "abreast blindness misread rival rivals": "multi-start; not identifiable, misfit, other minima",
     "found": "what it is",

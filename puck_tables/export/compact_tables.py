@@ -12,12 +12,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
-from scipy.interpolate import BSpline, make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
@@ -56,16 +55,6 @@ class SplineFit:
     def rows(self) -> list[int]:
         """Where the rows of each side begin, and where all end."""
         return [0, *np.cumsum(np.array(self.cells) + self.degree).tolist()]
-
-
-def weights(xi: FloatArray, cells: int, degree: int) -> FloatArray:
-    """The B-splines at places ξ, array (places, cells + degree).
-
-    >>> weights(np.array([0.0, 0.5, 1.0]), 2, 3).sum(axis=1).round(12).tolist()
-    [1.0, 1.0, 1.0]
-    """
-    knots = np.arange(-degree, cells + degree + 1.0)
-    return np.asarray(BSpline.design_matrix(xi * cells, knots, degree).toarray())
 
 
 def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -145,12 +134,9 @@ def _cost(tables: list[SplineFit]) -> float:
     return sum(_signs(table.numbers) * (table.degree + 1.0) for table in tables)
 
 
-@lru_cache(maxsize=256)
-def _solver(nodes: int, cells: int, degree: int) -> tuple[FloatArray, FloatArray]:
-    """B-splines at nodes, and what makes the best coefficients of values there."""
-    matrix = weights(np.arange(nodes) / (nodes - 1.0), cells, degree)
-    solver: FloatArray = np.asarray(np.linalg.pinv(matrix), dtype=np.float64)
-    return matrix, solver
+def _knots(cells: int, degree: int) -> FloatArray:
+    """Uniform knots of B-splines over 0 to ``cells``, no end among them repeated."""
+    return np.arange(-degree, cells + degree + 1.0)
 
 
 class _Fits:
@@ -170,7 +156,7 @@ class _Fits:
         self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
         self._at_heights = s ** np.arange(powers)[:, None]
         self._sizes = [one for one in CELLS if one < nodes // 4]
-        self._solved: dict[tuple[int, int], tuple[FloatArray, FloatArray]] = {}
+        self._solved: dict[tuple[int, int], FloatArray] = {}
 
     def quanta(self, degree: int) -> list[float]:
         """What is tried: short numbers when the factorial of the degree is taken out."""
@@ -183,7 +169,7 @@ class _Fits:
         low, high = -1, len(self._sizes)
         while high - low > 1:
             middle = (low + high) // 2
-            _, exact = self._solution(degree, self._sizes[middle])
+            exact = self._solution(degree, self._sizes[middle])
             if self._is_good(degree, exact[:, side], side):
                 high = middle
             else:
@@ -196,25 +182,27 @@ class _Fits:
         """The numbers of a side with the fewest signs; none if none are good."""
         good = []
         for cells in tried:
-            _, exact = self._solution(degree, cells)
+            exact = self._solution(degree, cells)
             whole = np.rint(exact[:, side] / quantum)
             if self._is_good(degree, quantum * whole, side):
                 good.append(whole.astype(np.int64))
         return min(good, key=_signs, default=np.empty(0, np.int64))
 
-    def _solution(self, degree: int, cells: int) -> tuple[FloatArray, FloatArray]:
-        """B-splines at the nodes, and the coefficients (cells + degree, sides, powers, …)."""
+    def _solution(self, degree: int, cells: int) -> FloatArray:
+        """The best coefficients (cells + degree, sides, powers, functions) in least squares."""
         if (degree, cells) not in self._solved:
-            matrix, solver = _solver(len(self._wanted), cells, degree)
-            solved = solver @ self._wanted.reshape(len(self._wanted), -1)
-            self._solved[degree, cells] = matrix, solved.reshape(-1, *self._wanted.shape[1:])
+            nodes = np.linspace(0.0, cells, len(self._wanted))
+            wanted = self._wanted.reshape(len(nodes), -1)
+            best = make_lsq_spline(nodes, wanted, _knots(cells, degree), degree).c
+            self._solved[degree, cells] = best.reshape(-1, *self._wanted.shape[1:])
         return self._solved[degree, cells]
 
     def _is_good(self, degree: int, coefficients: FloatArray, side: int) -> bool:
         """Whether a spline of one side is within the error at all nodes and heights."""
-        matrix, _ = self._solution(degree, len(coefficients) - degree)
-        got = np.tensordot(matrix, coefficients, axes=1)
-        result = np.einsum("npf,ph->nhf", got, self._at_heights)
+        cells = len(coefficients) - degree
+        spline = BSpline(_knots(cells, degree), coefficients, degree)
+        at_nodes = spline(np.linspace(0.0, cells, len(self._wanted)))
+        result = np.einsum("npf,ph->nhf", at_nodes, self._at_heights)
         return bool(np.abs(result - self._values[side]).max() <= self._error)
 
 

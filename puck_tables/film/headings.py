@@ -67,6 +67,7 @@ _DIVIDED = re.compile(
 _MANY = re.compile(r"[x×*·]?\s*\d+(?:\.\d+)?(?:e[-+]?\d+)?\s*(\D+)")  # a number before a unit
 # a number that is no number of a puck: a power of ten by which places are multiplied
 _TENS = re.compile(r"\s*(10+|\d*\.\d+|\d+e[-+]?\d+)\s+\w")
+_KINOVEA = re.compile(r".+/[^/]+/[XY]")
 _CAMEL = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])")
 _WITHIN = re.compile(r"(.+?)\s*[\[(]([^\[\]()]+)[\])]\s*(\S.*)")  # Position (m) Run #1
 
@@ -97,8 +98,8 @@ Heading(role='vx', puck='', unit=''))
     name, unit_text = parted(text.strip().strip("\"'").strip())
     if not unit_text and (within := _WITHIN.fullmatch(name)) and is_unit(within[2]):
         name, unit_text = f"{within[1]} {within[3]}", within[2].strip()
-    if name.startswith("/"):  # a topic of ROS
-        name = name.replace("/", ".")
+    if name.startswith("/") or _KINOVEA.fullmatch(name):  # a topic of ROS; red/0/X
+        name = re.sub("/0(?=/.$)", "", name).replace("/", ".")
     if "{" in name:  # v_{x}, θ_{r}: Tracker's names of what it derives from places
         return Heading("")
     tokens = _CAMEL.sub(" ", name)

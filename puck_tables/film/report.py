@@ -14,6 +14,8 @@ from puck_tables.io.columns import Dataset, variable
 _GAP = 1.5  # of the usual time from frame to frame
 _JITTER = 0.01  # of a frame: less is rounding of stamps
 _LEAP = 6.0  # of what it moves in frames near by
+_OPPOSITE = 1.5  # of 2: a frame is that much against those beside
+_FEW = 0.25  # of all frames
 _NEAR = 7  # frames: three strays do not move their median
 
 
@@ -34,7 +36,7 @@ def described(track: Track) -> list[str]:
     turned = 0 if track.angle is None else int(np.isfinite(track.angle).sum())
     lines.append("  angle   " + (f"seen in {counted(turned, 'frame')}" if turned else "none"))
     lines += [f"  hidden  {words}" for words in _hidden(track)]
-    lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track)]]
+    lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track), *_turned(track)]]
     if track.notes:
         lines.append(f"  read    {'; '.join(track.notes)}")
     return lines
@@ -102,6 +104,21 @@ def _leaps(track: Track) -> list[str]:
     return [
         f"{counted(leaps.size, 'leap')}, the farthest of {apart:.4g} m before "
         f"{time[at + 1]:.6g} s: was something else taken for the puck?"
+    ]
+
+
+def _turned(track: Track) -> list[str]:
+    """Frames that are half a turn off those beside: two marks were taken for each other."""
+    if track.angle is None:
+        return []
+    time, angle = track.time[track.seen], np.exp(1j * track.angle[track.seen])
+    neighbours = angle[2:] + angle[:-2]
+    off = np.flatnonzero((angle[1:-1] * neighbours.conj()).real < -_OPPOSITE)
+    if not off.size or off.size > _FEW * neighbours.size:  # fast ones are opposite all along
+        return []
+    return [
+        f"{counted(off.size, 'angle')} half a turn off those beside, the first at "
+        f"{time[1 + off[0]]:.6g} s: were two marks taken for each other?"
     ]
 
 

@@ -239,7 +239,7 @@ def _pucks(
             if name not in names:
                 raise InputError(
                     f"{path} has no mark '{name}'{meant(name, names)}. Its marks: "
-                    f"{', '.join(names[:8])}"
+                    f"{', '.join(filter(None, names[:8])) or 'none with a name'}"
                 )
         return {"": (how.centre, how.toward)}
     named = {*names, *(f"{body.name} {mark}" for mark in names)} & {*(how.pucks or ())}

@@ -195,9 +195,9 @@ def coupled(
         return []
     follows = {piece + 1 for match_ in matches for piece in match_.pieces}
     starts_new = [n for n in range(len(pieces)) if n not in follows]
-    chains = [[*range(*ends)] for ends in pairwise([*starts_new, len(pieces)])]
+    sequences = [[*range(*ends)] for ends in pairwise([*starts_new, len(pieces)])]
     tracks, home = [], {}
-    for k, slides in enumerate(chains):
+    for k, slides in enumerate(sequences):
         first, last = problem.films[slides[0]], problem.films[slides[-1]]
         whole = films[pieces[slides[0]].track]
         inside = (whole.frame >= first.frame[0]) & (whole.frame <= last.frame[-1])
@@ -232,7 +232,7 @@ def coupled(
     specs = [spec.coupled(sizes, grip)]
     if grip and len(matches) > 1:
         specs += [other for other in [spec.coupled(sizes, False)] if other.free != specs[0].free]
-    firsts = [slides[0] for slides in chains]
+    firsts = [slides[0] for slides in sequences]
     launches, result = problem.launches(x)[firsts], []
     for one in specs:
         shared = Problem(

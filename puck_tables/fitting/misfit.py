@@ -180,7 +180,7 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     wider = problem.angled and "radius" not in (*spec.free, *spec.fixed)  # told by angles alone
     wider = wider and spec.base is None
     if wider:
-        words = "with a radius of {:.3g} m: is " + f"{spec.puck.radius:g} m right?"
+        words = "with a radius of {:.3g} m" + f" (said to be {spec.puck.radius:g} m)"
         other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))
         others.append((words, other, 1.0))
     for words, other, scale in others:  # and the factor of its angles

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.safe_write import as_utf8
+from puck_tables._core.wording import meant
 
 
 @dataclass(frozen=True)
@@ -232,7 +233,7 @@ COLUMNS = {
     "heading_width": Column("rad", "width of heading", "interval of headings that do"),
     "speed_width": Column("m/s", "width of speed", "interval of launch speeds that do"),
     "spin_width": Column("rad/s", "width of spin", "interval of launch spins that do"),
-    "course": Column("", "course", "impacts that lead the puck to its end"),
+    "sequence": Column("", "sequence", "impacts that lead the puck to its end"),
     "puck": Column("1", "puck", "number of the puck"),
     "name": Column("", "puck", "name of the puck"),
     "in_play": Column("1", "in play", "1 until it falls into a pocket or over an edge"),
@@ -364,4 +365,5 @@ def following(result: Any, name: str) -> Any:
             raise AttributeError
         return column.by(*(getattr(result, one) for one in column.of))
     except AttributeError:
-        raise AttributeError(f"{type(result).__name__} has no {name}") from None
+        near = meant(name, result.__dict__.get("columns", ()))
+        raise AttributeError(f"{type(result).__name__} has no {name}{near}") from None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from puck_tables._core.arrays import instance, real
@@ -125,6 +125,13 @@ class UnitPuck:
             return 0.75
         return 2.0 * self.inertia / float(self.law.friction(0.5 * math.pi, 0.0).spin)
 
+    def with_table(self, table: ResultantTable | None) -> UnitPuck:
+        """The puck with friction from a table of its pressure law that reaches its height."""
+        if table is None:
+            return self
+        table.checked_range(self.delta, self.law)
+        return replace(self, table=table)
+
     def friction(self, accuracy: float) -> FrictionSection:
         """Its friction over the slip angle."""
         if self.table is not None:
@@ -132,13 +139,11 @@ class UnitPuck:
         return friction_for(self.law, self.delta, accuracy)
 
 
-def body_of(
-    pressure: str | Law, delta: float, gyration: float, table: ResultantTable | None = None
-) -> UnitPuck:
-    """A puck, checked; ``table``: where its friction comes from, if not from the law itself.
+def body_of(pressure: str | Law, delta: float, gyration: float) -> UnitPuck:
+    """A puck, checked.
 
-    Raises InputError if the pressure law is not known, a number is out of range, or the table of
-    another law; ContactError if the puck tips, or its contact is not known or not determined.
+    Raises InputError if the pressure law is not known or a number is out of range; ContactError if
+    the puck tips, or its contact is not known or not determined.
 
     >>> body_of("hertz", 0.5, 0.6).law.name
     'hertz'
@@ -148,7 +153,4 @@ def body_of(
     radius = checked_gyration(gyration)
     height = float(checked_delta(real("delta", delta, "units of 2 f h / r")))
     refuse_height(law, height)
-    if table is not None:
-        table.refuse_other(law)
-        table.checked_range(height, law.name)
-    return UnitPuck(law, height, radius, table)
+    return UnitPuck(law, height, radius)

@@ -60,6 +60,6 @@ def board_report(result: BoardAim) -> str:
     rows = zip(
         result.launch_speed, math.degrees(1.0) * result.launch_heading, result.launch_spin,
         *(factor * values for _, factor, values in margins), result.stop_time, result.miss,
-        (sequence or "none" for sequence in result.courses), strict=True,
+        (sequence or "none" for sequence in result.sequences), strict=True,
     )  # fmt: skip
     return f"{lines}\n\n{columns(heads, rows)}"

@@ -139,7 +139,7 @@ class SolverPerHeight:
 
         def work(start: int, stop: int) -> None:
             for height, count in zip(heights[start:stop], counts[start:stop], strict=True):
-                body = body_of(law, float(height), self._gyration, self._law_table)
+                body = body_of(law, float(height), self._gyration).with_table(self._law_table)
                 self._sections[body.delta] = self._made(body, int(count), alone)
 
         run_chunks(work, heights.size, 1, threads, progress)
@@ -154,7 +154,7 @@ class SolverPerHeight:
         return delta > self._plain_up_to
 
     def _body(self, delta: float) -> UnitPuck:
-        return body_of(self._pressure, delta, self._gyration, self._law_table)
+        return body_of(self._pressure, delta, self._gyration).with_table(self._law_table)
 
     def _prepare_plain(self) -> None:
         table, wanted = self._table, self._wanted

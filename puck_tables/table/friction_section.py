@@ -278,7 +278,7 @@ def section_of_table(table: ResultantTable, delta: float, accuracy: float) -> Fr
 
 def ratios_of_table(table: ResultantTable, delta: float) -> tuple[FloatArray, float]:
     """The friction ratios and their derivatives by the height at its nodes (n, 6), their error."""
-    table.checked_range(delta, table.law.name)
+    table.checked_range(delta, table.law)
     values = ratios_at(height_terms(table.values, table.heights), delta)
     # an error of ρ_∥ stands in every ratio
     return values, table.tolerance * float(values[:, 0].max() * (1.0 + values[:, :RATIOS].max()))

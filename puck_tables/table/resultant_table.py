@@ -33,7 +33,6 @@ from puck_tables.table.table import Progress, kinds
 Tell = Callable[[int], None]
 
 HEIGHTS = 4  # nodes of δ in a file
-_UNIFORM = "uniform"
 _INTERPRETATION = (
     "Friction on a puck of radius r, height h, mass m sliding with speed v and spin omega "
     "on a rough plane, Coulomb coefficient f, weight N = m g, whole base loaded by the "
@@ -124,13 +123,13 @@ class ResultantTable(LawTable):
         section_at(self.columns, height, out)
         return out
 
-    def checked_range(self, delta: npt.ArrayLike, law: str = _UNIFORM) -> FloatArray:
+    def checked_range(self, delta: npt.ArrayLike, law: Law | None = None) -> FloatArray:
         """``delta`` as an array, refused outside the range of the table.
 
         Parameters
         ----------
         delta : dimensionless heights
-        law : the pressure law that friction is wanted under
+        law : the pressure law that friction is wanted under, uniform pressure where left out
 
         Raises
         ------
@@ -138,25 +137,22 @@ class ResultantTable(LawTable):
             If a height is not finite, negative or above the largest of the table, or the table is
             of another law.
         """
-        if self.law.name != law:
-            self.refuse_other(law_of(law))
-        height = checked_delta(delta)
-        if not np.all(height <= self.delta_max):
-            raise InputError(
-                f"delta = {height[height > self.delta_max].flat[0]!s} is outside this table "
-                f"(pressure law {law}: 0 <= delta <= {self.delta_max:g}): beyond, the whole base "
-                "does not stay loaded at every phi; where it does, use the closed forms (--exact)"
-            )
-        return height
-
-    def refuse_other(self, law: Law) -> None:
-        """Refuse to be the table of another pressure law."""
+        law = law or law_of("uniform")
         if self.law != law:
             raise InputError(
                 f"{self.source} is a table under the pressure law {self.law.name}, not "
                 f"{law.name}{'' if self.law.name != law.name else ' as it is now'}: give a table "
                 "of that law"
             )
+        height = checked_delta(delta)
+        if not np.all(height <= self.delta_max):
+            raise InputError(
+                f"delta = {height[height > self.delta_max].flat[0]!s} is outside this table "
+                f"(pressure law {law.name}: 0 <= delta <= {self.delta_max:g}): beyond, the whole "
+                "base does not stay loaded at every phi; where it does, use the closed forms "
+                "(--exact)"
+            )
+        return height
 
     def resultants(self, phi: npt.ArrayLike, delta: npt.ArrayLike) -> Resultants:
         """Interpolated resultants ρ_∥, ρ_⊥, ρ_ω.
@@ -190,7 +186,7 @@ class ResultantTable(LawTable):
         """
         from puck_tables.kernels.quadratic import fill_resultants
 
-        height = self.checked_range(delta, self.law.name)
+        height = self.checked_range(delta, self.law)
         angle, height = broadcast(phi=checked_phi(phi), delta=height)
         out = np.empty((3, angle.size))
         phi_, delta_ = (np.ascontiguousarray(axis).reshape(-1) for axis in (angle, height))

@@ -96,7 +96,7 @@ class Pocketing:
         return LaunchRegions(middles[kept], widths[kept], landings.at(np.array(kept, np.int64)))
 
     def _some(self, inside: Whole, prints: Whole) -> Whole:
-        """A few of each course in turn."""
+        """A few of each sequence in turn."""
         seen: dict[int, int] = {}
         turns = []
         for n in inside.tolist():

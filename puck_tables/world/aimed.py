@@ -32,7 +32,7 @@ class BoardAim(Result):
     Arrays (n,), the least sensitive first: ``launch_spin`` rad/s, ``launch_vx``, ``launch_vy``,
     ``launch_speed`` m/s, ``launch_heading`` rad; of a run of the whole board with each:
     ``stop_time`` s, ``miss`` m (of a pocket 0: it falls in), ``end_error`` m, as
-    :class:`puck_tables.results.Run` has it, ``impacts`` that lead there, and ``courses``
+    :class:`puck_tables.results.Run` has it, ``impacts`` that lead there, and ``sequences``
     in words.  Of a target: ``per_degree``, ``per_percent`` m, how far the end moves per degree of
     heading and per cent of speed.  Of a pocket: ``heading_width`` rad and ``speed_width`` m/s (or
     ``spin_width`` rad/s), the intervals through the launch from which the puck falls in.
@@ -46,7 +46,7 @@ class BoardAim(Result):
     target: tuple[float, float]
     pocket: int | None
     columns: Mapping[str, FloatArray] = field(repr=False)
-    courses: tuple[str, ...]
+    sequences: tuple[str, ...]
     answer: str
     limit: str
     files: Mapping[str, str] = field(default_factory=dict, repr=False)
@@ -57,7 +57,7 @@ class BoardAim(Result):
         return f"BoardAim({self.puck} {self.where}: {self.answer})"
 
     def __len__(self) -> int:
-        return len(self.courses)
+        return len(self.sequences)
 
     def __getattr__(self, name: str) -> FloatArray:
         """A column by its name."""
@@ -146,7 +146,7 @@ class BoardAim(Result):
         """What was found, and how it was looked for."""
         return (
             f"{self.answer}\nlaunches {self.limit}: a sample over heading and speed (or spin), "
-            "dense where the course changes, then Newton's method on each course; every launch is "
+            "dense where the impacts change, then Newton's method on each; every launch is "
             "run on the whole board"
         )
 
@@ -155,7 +155,7 @@ class BoardAim(Result):
         return {
             **self._attributes(),
             **{name: values.tolist() for name, values in self.columns.items()},
-            "courses": list(self.courses),
+            "sequences": list(self.sequences),
             "scene": tables_of(self.scene),
             "units": {"target": "m", **{name: COLUMNS[name].unit for name in self.columns}},
         }
@@ -167,7 +167,7 @@ class BoardAim(Result):
     def dataset(self) -> Dataset:
         """One row a launch; what was aimed at as attributes, the scene as a text."""
         columns = {name: variable(name, row, ("launch",)) for name, row in self.columns.items()}
-        columns["course"] = variable("course", list(self.courses), ("launch",))
+        columns["sequence"] = variable("sequence", list(self.sequences), ("launch",))
         attributes = {"title": "Launches on a board", **self._attributes()}
         return Dataset({}, columns, attributes, scene_texts(self.scene, self.files))
 
@@ -193,7 +193,7 @@ def aimed(
     else:
         order = np.argsort(np.hypot(*margins.T), kind="stable")
     rows: list[list[float]] = []
-    courses: list[str] = []
+    sequences: list[str] = []
     kept: list[int] = []
     for n in order.tolist():
         if len(kept) == count:
@@ -204,7 +204,7 @@ def aimed(
             continue
         sequence = _sequence(run, names[wanted.puck])
         rows.append([float(run.stop_times[wanted.puck]), miss, run.end_error, len(sequence)])
-        courses.append(", ".join(sequence))
+        sequences.append(", ".join(sequence))
         kept.append(n)
     starts, margins = starts[kept], margins[kept]
     values = [
@@ -222,7 +222,7 @@ def aimed(
     columns = dict(zip((*_LAUNCH, *_END, *last), values, strict=True))
     return BoardAim(
         scene, names[wanted.puck], names[wanted.striker], wanted.place,
-        wanted.pocket if pocketing else None, columns, tuple(courses),
+        wanted.pocket if pocketing else None, columns, tuple(sequences),
         answer.format(puck=names[wanted.puck]), limit, files_of(scene),
     )  # fmt: skip
 

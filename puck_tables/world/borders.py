@@ -54,11 +54,11 @@ _UNFELT = 1e-10  # of a radius: whose rim has left by less may be looked at late
 # how far the rim is from the border, how fast that changes, for how long it surely is not there,
 # for how long it is at nothing but the nearest straight or convex piece, and the way to that; where
 # there is no such piece the latter time is 0
-Sight = tuple[float, float, float, float, float, float]
+Clearance = tuple[float, float, float, float, float, float]
 
 
 @inlined
-def _to_line(away: float, rate: float, how: int, radius: float, accel: float) -> Sight:
+def _to_line(away: float, rate: float, how: int, radius: float, accel: float) -> Clearance:
     """Of a straight border in the direction (1, 0)."""
     if how == OVERLAPS:
         on, back = radius + away, radius - away
@@ -72,7 +72,7 @@ def _to_line(away: float, rate: float, how: int, radius: float, accel: float) ->
 @inlined
 def to_round(
     dx: float, dy: float, vx: float, vy: float, reach: float, how: int, radius: float, accel: float
-) -> Sight:
+) -> Clearance:
     """Of a circle, whose middle is at (dx, dy) from the centre of the disc."""
     far = math.sqrt(dx * dx + dy * dy)
     rate = -(dx * vx + dy * vy) / far if far > 0.0 else math.sqrt(vx * vx + vy * vy)
@@ -96,7 +96,7 @@ def to_round(
 @inner
 def _to_polygon(
     floor_map: FloatArray, number: int, state: FloatArray, how: int, radius: float, accel: float
-) -> Sight:
+) -> Clearance:
     """Of a polygon: by the nearest point of each of its edges."""
     count = int(patch_of(floor_map, number, CORNERS))
     first = int(patch_of(floor_map, number, CORNER))
@@ -129,7 +129,7 @@ def _to_polygon(
 @inlined
 def _look(
     floor_map: FloatArray, number: int, how: int, radius: float, state: FloatArray, accel: float
-) -> Sight:
+) -> Clearance:
     """How the rim of a disc in a state (6,) is to a border, or a patch."""
     borders = int(floor_map[BORDERS])
     vx, vy = state[VX], state[VY]

@@ -44,11 +44,11 @@ from puck_tables.world.segment_starts import Room, room_for
 from puck_tables.world.setting_off import FULL, PAUSED, PUSHING, REACHED
 from puck_tables.world.step_ledger import WORK_COLUMNS
 
-PRINT, LENGTH, OUTCOME, PASSES = range(4)  # columns of a course
+PRINT, LENGTH, OUTCOME, PASSES = range(4)  # columns of a sequence
 SEQUENCE_COLUMNS = 4  # the four above
 
 _PRIME = 2147483647  # products of two numbers below it fit 64 bits
-_LOOKS = 6  # at a course before its end: at Q/2J, Q/4J, ...
+_LOOKS = 6  # at a sequence before its end: at Q/2J, Q/4J, ...
 MOST_ROWS = 1 << 16  # of events and segments, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
 _JUST = 1e-15  # of a time: before it
@@ -58,7 +58,7 @@ _JUST = 1e-15  # of a time: before it
 def trace(
     engine: Engine, disc: int, through: int, prints: Whole, marks: Whole, sequence: Whole
 ) -> None:
-    """The course of a disc, from the events of a run.
+    """The sequence of a disc, from the events of a run.
 
     ``sequence`` (4,): a print, the same for runs in which the same impacts led there (in whatever
     order those happened that do not bear on each other); how many; the obstacle −1 − k by which it
@@ -105,7 +105,7 @@ class Ends(NamedTuple):
     End time, impacts, and how it ended.
 
     ``how`` (runs,): as :func:`puck_tables.world.engine.advance` says, or without a time
-    :func:`puck_tables.world.lasting.next_target`.  ``courses`` (runs, 4): of
+    :func:`puck_tables.world.lasting.next_target`.  ``sequences`` (runs, 4): of
     the disc that is watched, see :func:`puck_tables.world.bulk.trace`.
     ``ledgers`` (runs, 9):
     where energy went, see :mod:`puck_tables.world.ledger`; of runs that are watched none.
@@ -117,7 +117,7 @@ class Ends(NamedTuple):
     time: FloatArray
     impacts: FloatArray
     how: Whole
-    courses: Whole
+    sequences: Whole
     ledgers: FloatArray
 
 
@@ -151,7 +151,7 @@ def _follow_all(
 
     ``scales`` (runs, 2): the scales of each, so that none depends on others; ``limits`` (runs,) and
     ``prescribed``: see :func:`puck_tables.world.lasting.limits_of`.  ``watch`` (3,): the
-    disc whose courses are wanted, −1: none; the one that they are to pass; and how many impacts
+    disc whose sequences are wanted, −1: none; the one that they are to pass; and how many impacts
     they may have: a run is given up when there are more.
     """
     patience(launches.shape[0])
@@ -180,8 +180,8 @@ def _follow_all(
             )
             struck = NOBODY
             if watch[0] >= 0:
-                trace(engine, watch[0], watch[1], room.shares, room.marks, ends.courses[run])
-                if ends.courses[run, LENGTH] > watch[2]:
+                trace(engine, watch[0], watch[1], room.shares, room.marks, ends.sequences[run])
+                if ends.sequences[run, LENGTH] > watch[2]:
                     break
             if how != REACHED:
                 break
@@ -219,9 +219,9 @@ def follow_all(
 ) -> Ends:  # fmt: skip
     """The ends of runs of a board at its start, with launches (runs, m, 3) of some discs.
 
-    ``watch``: the disc whose courses are wanted, one that they are to pass (−1: none), and how many
-    impacts they may have: runs with more are given up where they are.  A board where more happens
-    than rows are there for gets more rows, and is run again.
+    ``watch``: the disc whose sequences are wanted, one that they are to pass (−1: none), and how
+    many impacts they may have: runs with more are given up where they are.  A board where more
+    happens than rows are there for gets more rows, and is run again.
     """
     runs, count = len(launches), len(engine.discs)
     ends = Ends(
@@ -238,7 +238,7 @@ def follow_all(
         part = Ends(
             ends.states[start:stop], ends.in_play[start:stop], ends.carried[start:stop],
             ends.time[start:stop], ends.impacts[start:stop], ends.how[start:stop],
-            ends.courses[start:stop], ends.ledgers[start:stop],
+            ends.sequences[start:stop], ends.ledgers[start:stop],
         )  # fmt: skip
         _follow_all(
             mine, engine.discs, engine.kinds, engine.hangs, engine.segments, first, discs,

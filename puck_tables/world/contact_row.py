@@ -22,7 +22,7 @@ from puck_tables.world.layout import (
     restitutions_of_pair,
 )
 
-# columns of a contact in work: normal, slownesses 1/m_n and 1/m_t, law, whether it acts in this
+# columns of a contact in work: normal, inverse masses 1/m_n and 1/m_t, law, whether it acts in this
 # round, impulses of the round and of all, approach and slip at the first, energy lost, and the two
 # restitutions, numbers or laws, of which E is the smaller
 NX, NY, SOFT, SLICK, E, BETA, MU, ACTS, PN, PT, SUM_N, SUM_T, FIRST_N, FIRST_T, LOSS = range(15)
@@ -53,7 +53,7 @@ def got_impulse(row: FloatArray) -> bool:
 
 
 @inlined
-def _slownesses(
+def _inverse_masses(
     disc: FloatArray, state: FloatArray, nx: float, ny: float
 ) -> tuple[float, float, float]:
     """How much a unit impulse changes approach and slip: 1/m_n, 1/m_t, and one the other."""
@@ -68,7 +68,7 @@ def _slownesses(
 
 @inlined
 def prepare_contact(engine: Engine, i: int, j: int, states: FloatArray, row: FloatArray) -> None:
-    """Normal, slownesses and law of a contact that has had no impulse yet."""
+    """Normal, inverse masses and law of a contact that has had no impulse yet."""
     discs = engine.discs
     if j >= 0:
         dx, dy = states[j, X] - states[i, X], states[j, Y] - states[i, Y]
@@ -78,9 +78,9 @@ def prepare_contact(engine: Engine, i: int, j: int, states: FloatArray, row: Flo
         _, row[NX], row[NY], _ = normal_to(
             engine.obstacles[-1 - j], discs[i, RADIUS], states[i, X], states[i, Y], 0.0
         )
-    soft, slick, cross = _slownesses(discs[i], states[i], row[NX], row[NY])
+    soft, slick, cross = _inverse_masses(discs[i], states[i], row[NX], row[NY])
     if j >= 0:
-        more, slicker, twist = _slownesses(discs[j], states[j], -row[NX], -row[NY])
+        more, slicker, twist = _inverse_masses(discs[j], states[j], -row[NX], -row[NY])
         soft, slick, cross = soft + more, slick + slicker, cross + twist
     row[SOFT], row[SLICK], row[CROSS] = soft, slick, cross
     row[BETA], row[MU] = along_of_pair(engine.rims, discs, engine.obstacles, i, j)

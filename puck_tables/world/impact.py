@@ -49,8 +49,8 @@ from puck_tables.world.contact_row import (
 from puck_tables.world.contact_search import HARDLY
 from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.group import ARM, GRIP, LEVEL, STICKS, GroupBuffer, Scales
-from puck_tables.world.group import NX as SIGHT_NX
-from puck_tables.world.group import NY as SIGHT_NY
+from puck_tables.world.group import NX as GROUP_NX
+from puck_tables.world.group import NY as GROUP_NY
 from puck_tables.world.holds import forbid, response
 from puck_tables.world.layout import HOLD, INV_INERTIA, INV_MASS, RADIUS, smaller_at, write_over
 from puck_tables.world.multipliers import stop_slips
@@ -142,7 +142,7 @@ def as_forces(
         contact = buffer.kinematics[acting]
         for column in range(contact.shape[0]):
             contact[column] = 0.0
-        contact[SIGHT_NX], contact[SIGHT_NY] = row[NX], row[NY]
+        contact[GROUP_NX], contact[GROUP_NY] = row[NX], row[NY]
         contact[GRIP] = 0.0  # β = −1: smooth
         if row[BETA] > -1.0:
             contact[GRIP] = row[MU] * (1.0 + row[E]) / (1.0 + row[BETA])

@@ -308,7 +308,7 @@ class Scene(SceneSpec):
         >>> cue = Puck(0.03, friction=0.1, name="cue")
         >>> red = Puck(0.03, friction=0.1, name="red", launch=Launch(position=(0.3, 0.0)))
         >>> found = Scene(pucks=[cue, red]).aim((0.8, 0.1), striker="cue")
-        >>> found.courses, found.launch_speed.round(6).tolist()
+        >>> found.sequences, found.launch_speed.round(6).tolist()
         (('cue - red',), [1.23967])
         """
         from puck_tables.world.aim import aim

@@ -1,6 +1,6 @@
 """Shots of one puck on a board: where another, or it itself, ends, for many launches at once.
 
-A sample of them has headings by speeds (or spins), dense where the course of a puck changes.
+A sample of them has headings by speeds (or spins), dense where the impacts of a puck change.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ _AT_ONE = 48  # headings towards one disc that looks small
 _SMALL = 8.0  # steps of the heading: less is small
 _WIDER = 3.0  # by how much the headings towards a disc are more than it takes, for paths that bend
 _CLOSEST = 1e-7  # rad: closer headings are not parted
-_SHARES = (0.02, 0.1, 0.5)  # of the time that the striker may slide: then courses are looked at
+_SHARES = (0.02, 0.1, 0.5)  # of the time that the striker may slide: then sequences are looked at
 _STEP = 1e-7  # of a difference: rad, or of the speed
 NO_SEQUENCE = -1  # the print of a run without an end
 
 
 class Effort(NamedTuple):
-    """How many headings, rows of speeds (or spins), and launches more where courses change."""
+    """How many headings, rows of speeds (or spins), and launches more where sequences change."""
 
     headings: int
     rows: int
@@ -90,9 +90,9 @@ def headings_for(scene: SceneSpec, striker: int, count: int) -> FloatArray:
 def take_sample(
     shots: Shots, headings: FloatArray, seconds: FloatArray, most: int, effort: Effort
 ) -> TriedLaunches:
-    """Launches of all headings at all speeds (or spins), and more between courses that differ.
+    """Launches of all headings at all speeds (or spins), and more between sequences that differ.
 
-    ``most``: impacts that a course may have.
+    ``most``: impacts that a sequence may have.
     """
     launches = np.stack(np.meshgrid(headings, seconds), axis=2).reshape(-1, 2)
     rows = np.repeat(np.arange(len(seconds)), len(headings))
@@ -108,7 +108,7 @@ def take_sample(
 
 
 def _gaps(sample: TriedLaunches, most: int) -> Whole:
-    """Where the course changes from a launch to the next heading, those of few impacts first."""
+    """Where the sequence changes from a launch to the next heading, those of few impacts first."""
     landings = sample.landings
     first, wide = _neighbours(sample)
     after = _next(sample)
@@ -229,18 +229,17 @@ class Shots:
             self._watch,
         )  # fmt: skip
         x, y = ends.states[:, self._watch[0], 0], ends.states[:, self._watch[0], 1]
-        few = ends.courses[:, LENGTH] <= self._watch[2]
+        few = ends.sequences[:, LENGTH] <= self._watch[2]
         pushing = np.flatnonzero((ends.how == PUSHING) & few)
         self.left_out += 0 if self.patient else len(pushing)
         for run in pushing if self.patient else ():
             keep_on()
-            self._alone(starts[run], ends.courses[run], ends.states[run], ends.how, int(run))
+            self._alone(starts[run], ends.sequences[run], ends.states[run], ends.how, int(run))
         moving = (ends.states[:, self._watch[0], 3:6] != 0.0).any(axis=1)
-        courses = ends.courses
-        courses[(ends.how != REACHED) | (moving & (courses[:, OUTCOME] == 0)), PRINT] = NO_SEQUENCE
-        return Landings(
-            x, y, *(courses[:, column] for column in (PRINT, LENGTH, OUTCOME, PASSES))
-        )  # fmt: skip
+        sequences = ends.sequences
+        open_yet = (ends.how != REACHED) | (moving & (sequences[:, OUTCOME] == 0))
+        sequences[open_yet, PRINT] = NO_SEQUENCE
+        return Landings(x, y, *sequences[:, [PRINT, LENGTH, OUTCOME, PASSES]].T)
 
     def _slid(self, starts: FloatArray) -> Landings:
         """Where a free puck on a base ends, which takes no board."""
@@ -293,7 +292,7 @@ class Shots:
     def sensitivities(self, starts: FloatArray) -> FloatArray:
         """How far the end moves per degree of heading and per cent of speed, (n, 2) m.
 
-        inf where the course is another on both sides.
+        inf where the sequence is another on both sides.
         """
         here = self.follow(starts)
         out = np.full((len(starts), 2), np.inf)

@@ -1,4 +1,4 @@
-"""Launches after which a puck stops at a place: Newton's method on each course from many starts."""
+"""Launches after which a puck stops at a place: Newton's method on each impact sequence."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Which = np.ndarray
 
 _STEP = 1e-7  # of a difference, of the range of the heading or the speed
 _NEAR = 2.0  # steps of the sample that a start may be from what it leads to
-_INSIDE = 1.2  # half steps, of a cell of one course
+_INSIDE = 1.2  # half steps, of a cell of one sequence
 _MOST_STARTS = 2000  # of Newton's method, those that end nearest to the place
 _ITERATIONS, _HALVINGS = 30, 8  # of Newton's method; of one of its steps
 _SAME = 1e-6  # of the ranges: launches closer than this are one
@@ -36,7 +36,7 @@ def stops_at(
 ) -> Roots:  # fmt: skip
     """All launches found that end at a target to ``close`` m.
 
-    ``fine``: the launches of the sample whose courses count.  ``low``, ``high``: between which
+    ``fine``: the launches of the sample whose sequences count.  ``low``, ``high``: between which
     the speed (or spin) may be.
     """
     place = np.array(target)
@@ -58,7 +58,7 @@ def _grid(sample: TriedLaunches) -> tuple[Whole, FloatArray]:
 
 
 def _in_cells(sample: TriedLaunches, fine: Which, place: FloatArray) -> FloatArray:
-    """Starts in cells of four launches of one course whose ends surround the target."""
+    """Starts in cells of four launches of one sequence whose ends surround the target."""
     grid, _ = _grid(sample)
     if grid.shape[0] < 2 or grid.shape[1] < 3:
         return np.empty((0, 2))
@@ -86,7 +86,7 @@ def _in_cells(sample: TriedLaunches, fine: Which, place: FloatArray) -> FloatArr
 def _clear_of(
     shots: Shots, sample: TriedLaunches, fine: Which, place: FloatArray, low: float, high: float
 ) -> FloatArray:
-    """Starts where courses change, or close to it, by the slopes at launches themselves."""
+    """Starts where sequences change, or close to it, by the slopes at launches themselves."""
     grid, common = _grid(sample)
     landings = sample.landings
     right, up = np.roll(grid, -1, axis=1), grid[1:]
@@ -127,7 +127,7 @@ def _solved(slopes: FloatArray, wanted: FloatArray) -> tuple[FloatArray, Which]:
 def _slopes(
     shots: Shots, launches: FloatArray, ends: Landings, low: float, high: float
 ) -> FloatArray:
-    """How the ends change with heading and speed (or spin), (n, 2, 2), on the same course."""
+    """How the ends change with heading and speed (or spin), (n, 2, 2), on the same sequence."""
     steps = _STEP * np.array([HEADINGS, high - low])
     slopes = np.full((len(launches), 2, 2), np.nan)
     for column, step in enumerate(steps):
@@ -147,7 +147,7 @@ def _newton(
     shots: Shots, launches: FloatArray, landings: Landings, place: FloatArray, close: float,
     low: float, high: float,
 ) -> Roots:  # fmt: skip
-    """Newton's method with halved steps, each on the course on which it began."""
+    """Newton's method with halved steps, each on the sequence on which it began."""
     launches, landings = launches.copy(), landings.at(np.arange(len(launches)))
     misses = np.hypot(landings.x - place[0], landings.y - place[1])
     alive = np.ones(len(launches), bool)

@@ -9,5 +9,5 @@ forgives most is drawn.
 import puck_tables as pt
 
 shots = pt.Scene.load("crokinole").aim(puck="shot", pocket=0, max_speed=2.0)
-print(len(shots.courses), "found;", shots.courses[0])
+print(len(shots.sequences), "found;", shots.sequences[0])
 figure = shots.plot()

@@ -1,6 +1,7 @@
 """Trajectories that Kinovea exports as text: blocks of times, x and y, one for each.
 
-Times are hours:minutes:seconds:hundredths, so coarse that frames a second are the better clock.
+Times are numbers, or of an older version hours:minutes:seconds:hundredths, so coarse that frames a
+second are the better clock.
 
 References
 ----------
@@ -19,13 +20,13 @@ from puck_tables.film.film import Reader
 
 _LARGEST = 1 << 26  # bytes
 _BEGINS = b"#Kinovea Trajectory"
-_ROW = re.compile(r"(?:(\d+):)?(\d+):(\d+):(\d+)\s+(\S+)\s+(\S+)\s*")
+_ROW = re.compile(r"(?:(?:(\d+):)?(\d+):(\d+):(\d+)|(-?\d[\d.,]*))\s+(\S+)\s+(\S+)")
 
 
 def _as_csv(path: str | Path, head: bytes) -> bytes:
     """A file of Kinovea as a table (UTF-8, semicolons) of trajectory, time, x and y."""
     content = read_whole(path, _LARGEST)
-    rows, track, apart = ["track;t [s];x;y"], 0, True
+    rows, track, apart, unit = [], 0, True, ""
     for n, line in enumerate(content.decode(encoding_of(path, content)).splitlines(), start=1):
         bare = line.strip()
         if not bare or bare.startswith("#"):
@@ -34,15 +35,16 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
         row = _ROW.fullmatch(bare)
         if row is None:
             raise InputError(
-                f"{path}, line {n}: '{bare:.40}' is no time h:mm:ss:hundredths with x and y: "
-                "export it from Kinovea once more, or as CSV"
+                f"{path}, line {n}: '{bare:.40}' is no time, a number or h:mm:ss:hundredths, with "
+                "x and y: export it from Kinovea once more, or as CSV"
             )
         track, apart = track + apart, False
-        hours, minutes, secs, part, x, y = row.groups()
-        whole = 3600 * int(hours or 0) + 60 * int(minutes) + int(secs)
-        places = (place.replace(",", ".") for place in (x, y))
-        rows.append(";".join([str(track), f"{whole}.{int(part):02d}", *places]))
-    return ("\n".join(rows) + "\n").encode()
+        hours, minutes, secs, part, *cells = row.groups("")
+        if secs:
+            unit = " [s]"
+            cells[0] = f"{3600 * int(hours or 0) + 60 * int(minutes) + int(secs)}.{int(part):02d}"
+        rows.append(";".join([str(track), *(cell.replace(",", ".") for cell in cells)]))
+    return "\n".join([f"track;t{unit};x;y", *rows, ""]).encode()
 
 
 READERS = (Reader(lambda _, head: head.startswith(_BEGINS), as_text=_as_csv),)
