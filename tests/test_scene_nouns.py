@@ -195,6 +195,7 @@ def test_a_changed_copy_keeps_the_ranges_of_the_parts_that_it_keeps() -> None:
         ({"ranges": {3: [1]}}, "ranges must be a mapping from paths"),
         ({"walls": pt.Wall((1, 0), normal=(1, 0))}, r"a list of tables, \[\[wall\]\], or of Wall"),
         ({"floor": None}, "floor = None: must be a table or a Floor"),
+        ({"edges": [1]}, r"edge\[0\] = 1: must be a table or an Edge"),
     ],
 )  # fmt: skip
 def test_what_contradicts_or_means_nothing_is_refused(parts: dict, words: str) -> None:

@@ -77,7 +77,8 @@ def read_part(
             return data
         data = entered
     if not isinstance(data, Mapping):
-        reading.fault(path or kind.__name__.lower(), data, f"a table or a {kind.__name__}")
+        one = ("an " if kind.__name__[0] in "AEIO" else "a ") + kind.__name__
+        reading.fault(path or kind.__name__.lower(), data, f"a table or {one}")
         return None
     values = read_values(kind, data, path, reading)
     if values is None:

@@ -207,6 +207,7 @@ def aim(
             )
     fastest = max(abs(one.speed or one.high) for one in searches)
     widest = max(abs(one.high if one.spin is None else one.spin) for one in searches)
+    slip = fastest + pucks_of(scene)[wanted.striker].radius * widest
     limit, never = _limit(searches), out_of_reach(scene, wanted, fastest, widest)
     if never:
         return aimed(scene, wanted, f"no launch {limit} {never}", limit=limit)
@@ -216,7 +217,7 @@ def aim(
     for patient in (False, True):
         for n, search in enumerate(searches):
             both = [
-                Shots(board, *wanted[:3], max_impacts, search.velocities, patient)
+                Shots(board, *wanted[:3], max_impacts, search.velocities, slip, patient)
                 for board in (scene, spare) if board is not None
             ]  # fmt: skip
             solutions.append(search.run(both[0], wanted, max_impacts, both[1] if spare else None))

@@ -17,15 +17,17 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import PuckError
 from puck_tables.scene.acting import acting
+from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.map_of_floor import MANY
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stops import stop_on_base
 from puck_tables.world.agreement import frictions_under, is_integrated, segment_error
 from puck_tables.world.bulk import LENGTH, OUTCOME, PASSES, PRINT, follow_all, trace
-from puck_tables.world.engine_state import Whole
-from puck_tables.world.floors import may_be_mixed
+from puck_tables.world.engine_state import Engine, Whole
+from puck_tables.world.floor_under import SURE, law_goes_to
+from puck_tables.world.floors import may_be_mixed, velocities_under
 from puck_tables.world.named_pucks import pucks_of, start_of
-from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared
+from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared, with_law_up_to
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
 
@@ -184,18 +186,20 @@ class Shots:
     ``most``: impacts that may lead the puck to its end; ``velocities``: from launches (n, 2) to vx,
     vy, spin (n, 3); ``patient``: whether runs in which pucks push each other are followed, one by
     one, which takes a thousand times as long.  Where pucks are integrated it is done.
+    ``fastest``: slip of the striker's rim at a launch, on a floor at rest, m/s.
     """
 
     def __init__(
         self, scene: SceneSpec, striker: int, puck: int, through: int, most: int,
-        velocities: Callable[[FloatArray], FloatArray], patient: bool = False,
+        velocities: Callable[[FloatArray], FloatArray], fastest: float, patient: bool = False,
     ) -> None:  # fmt: skip
         self.scene, self.striker, self.velocities = scene, striker, velocities
         self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
         self.until = math.inf if scene.time is None else scene.time
         start = _finely(scene)
-        self._engine, self._first, place = start.engine, start.states, np.argsort(start.order)
+        self._first, place = start.states, np.argsort(start.order)
         self._disc = int(place[striker])
+        self._engine = _with_law_for(fastest, scene, start, self._disc)
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
         pucks = pucks_of(scene)
         self.patient = (
@@ -312,3 +316,19 @@ def _finely(scene: SceneSpec) -> Start:
     start = prepared(scene.single(), runs=MANY)  # a search follows thousands
     start.engine.scale[2] = STEP_SHARE * segment_error(scene)
     return start
+
+
+def _with_law_for(fastest: float, scene: SceneSpec, start: Start, disc: int) -> Engine:
+    """With friction laws by name for slips of a rim at its launch, as :class:`Shots` has them.
+
+    Runs that are faster than its law are followed one by one.
+    """
+    sx, sy, turning = velocities_under(start.engine, start.states)[disc].tolist()
+    floor = math.hypot(sx, sy) + pucks_of(scene)[start.order[disc]].radius * abs(turning)
+    top = min((fastest + floor) / SURE, end_of_laws(scene)[0])
+    if top <= law_goes_to(start.engine.regions):
+        return start.engine
+    try:
+        return with_law_up_to(start.engine, scene, start.order, top, MANY)
+    except PuckError:  # it lifts part of a base: a run alone says so
+        return start.engine
