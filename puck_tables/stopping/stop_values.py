@@ -325,11 +325,6 @@ class StopValues(Table):
     # the record of the kind
 
     @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} phi x {HEIGHTS} delta nodes"
-
-    @property
     def valid_range(self) -> str:
         """Where it holds, in words."""
         return f"|phi| <= pi/2, 0 <= delta <= {UPPER_DELTA:g}; refused outside"

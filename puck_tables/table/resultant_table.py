@@ -196,11 +196,6 @@ class ResultantTable(LawTable):
     # the record of the kind
 
     @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} phi x {HEIGHTS} delta nodes"
-
-    @property
     def valid_range(self) -> str:
         """Where it holds, in words."""
         return f"|phi| <= pi/2, 0 <= delta <= {self.delta_max:g}; refused outside"

@@ -107,11 +107,6 @@ class SectionTable(LawTable):
         ], progress)  # fmt: skip
 
     @property
-    def grid(self) -> str:
-        """How many nodes it has, in words."""
-        return f"{len(self.values)} phi nodes"
-
-    @property
     def valid_range(self) -> str:
         """Where it holds, in words."""
         return f"|phi| <= pi/2, delta = {self.delta:g} only"

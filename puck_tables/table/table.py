@@ -318,9 +318,9 @@ class Table(ABC):
         return "uniform"
 
     @property
-    @abstractmethod
     def grid(self) -> str:
         """How many nodes it has, in words."""
+        return " x ".join(f"{len(one.values)} {n}" for n, one in self.axes.items()) + " nodes"
 
     @property
     @abstractmethod
