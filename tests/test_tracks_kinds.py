@@ -525,7 +525,9 @@ def test_numbers_for_times_and_tables_of_kinovea(tmp_path: Path, motion: Motion)
     rows = [f"{a:.4f} {100 * x:.4f} {100 * y:.4f}".replace(".", ",")
             for a, (x, y) in zip(t, place, strict=True)]  # fmt: skip
     head = ["#Kinovea Trajectory data export", "#T X Y", "", "# Trajectory 1"]
-    check(read_tracks(lines(tmp_path / "a.txt", *head, *rows), unit="cm")[0], motion, digits=1e-6)
+    file = lines(tmp_path / "a.txt", *head, *rows)
+    check(read_tracks(file, unit="cm")[0], motion, digits=1e-6)
+    check(read_tracks(file, columns="t [s],x [cm],y [cm]")[0], motion, digits=1e-6)
     names = "Time;Trajectory 1/0/X;Trajectory 1/0/Y"
     table = [row.replace(" ", ";") for row in rows]
     check(read_tracks(lines(tmp_path / "a.csv", names, *table), unit="cm")[0], motion, digits=1e-6)

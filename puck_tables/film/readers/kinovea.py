@@ -44,7 +44,10 @@ def _as_csv(path: str | Path, head: bytes) -> bytes:
             unit = " [s]"
             cells[0] = f"{3600 * int(hours or 0) + 60 * int(minutes) + int(secs)}.{int(part):02d}"
         rows.append(";".join([str(track), *(cell.replace(",", ".") for cell in cells)]))
-    return "\n".join([f"track;t{unit};x;y", *rows, ""]).encode()
+    lines = [f"track;t{unit};x;y", *rows]
+    if track == 1:  # as the columns that somebody sees who opens the file
+        lines = [line.partition(";")[2] for line in lines]
+    return "\n".join([*lines, ""]).encode()
 
 
 READERS = (Reader(lambda _, head: head.startswith(_BEGINS), as_text=_as_csv),)
