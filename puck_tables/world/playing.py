@@ -138,7 +138,7 @@ class Playing:
                     return (
                         f"{self.names[number]}, which is driven, squeezes {others} at "
                         f"{self.time:.6g} s against what does not give way: let its path end "
-                        "before, or leave more room"
+                        "before, drive it elsewhere, or leave more room"
                     )
         if how == OFF_TABLE:
             return self._off_table()
