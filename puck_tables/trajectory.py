@@ -218,8 +218,7 @@ def simulate(
     _check_frames(frames, times)
     frame = frame_of(launch, w, puck.decel, puck.radius)
     body = puck.body
-    if not body.has_closed_forms:
-        body = body.with_table(table)
+    body = body if body.has_closed_forms else body.with_table(table)
     energy = 0.5 * puck.mass * (frame.speed * frame.speed + body.inertia * frame.rim * frame.rim)
     _refuse_too_large(frame, body, energy, puck.decel)
 

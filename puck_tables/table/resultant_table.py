@@ -148,9 +148,8 @@ class ResultantTable(LawTable):
         if not np.all(height <= self.delta_max):
             raise InputError(
                 f"delta = {height[height > self.delta_max].flat[0]!s} is outside this table "
-                f"(pressure law {law.name}: 0 <= delta <= {self.delta_max:g}): beyond, the whole "
-                "base does not stay loaded at every phi; where it does, use the closed forms "
-                "(--exact)"
+                f"(pressure law {law.name}: 0 <= delta <= {self.delta_max:g}): beyond, part of the "
+                "base lifts at some phi; where none does, use the closed forms (--exact)"
             )
         return height
 
