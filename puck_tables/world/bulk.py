@@ -48,7 +48,7 @@ PRINT, LENGTH, OUTCOME, PASSES = range(4)  # columns of a sequence
 SEQUENCE_COLUMNS = 4  # the four above
 
 _PRIME = 2147483647  # products of two numbers below it fit 64 bits
-_LOOKS = 6  # at a sequence before its end: at Q/2J, Q/4J, ...
+_LOOKS = 6  # at a slide before its end: at Q/2J, Q/4J, ...
 MOST_ROWS = 1 << 16  # of events and segments, and of steps: 60 MB
 END_COLUMNS = 6  # of a puck: its state at the end
 _JUST = 1e-15  # of a time: before it
@@ -58,7 +58,7 @@ _JUST = 1e-15  # of a time: before it
 def trace(
     engine: Engine, disc: int, through: int, prints: Whole, marks: Whole, sequence: Whole
 ) -> None:
-    """The sequence of a disc, from the events of a run.
+    """The impact sequence of a disc, from the events of a run.
 
     ``sequence`` (4,): a print, the same for runs in which the same impacts led there (in whatever
     order those happened that do not bear on each other); how many; the obstacle −1 − k by which it
