@@ -76,8 +76,8 @@ DOORS = {
     "distributed": {"bulk.cluster"},
     "dask": {"bulk.cluster"},
     "scipy": {
-        "bulk.spreads", "chetaev", "export.compact_tables", "export.law_values", "fitting",
-        "stopping", "table.speed_patch", "tradeoff", "wrench.push",
+        "_core.monotone", "bulk.spreads", "chetaev", "export.compact_tables", "export.law_values",
+        "fitting", "stopping", "table.speed_patch", "tradeoff", "wrench.push",
     },
     "click": {"cli"},
     "gymnasium": {"gym"},

@@ -36,7 +36,9 @@ def described(track: Track) -> list[str]:
     turned = 0 if track.angle is None else int(np.isfinite(track.angle).sum())
     lines.append("  angle   " + (f"seen in {counted(turned, 'frame')}" if turned else "none"))
     lines += [f"  hidden  {words}" for words in _hidden(track)]
-    lines += [f"  odd     {words}" for words in [*_steps(track), *_leaps(track), *_turned(track)]]
+    lines += [
+        f"  odd     {words}" for words in [*_steps(track), *_leaps(track), *_exchanged(track)]
+    ]
     if track.notes:
         lines.append(f"  read    {'; '.join(track.notes)}")
     return lines
@@ -107,7 +109,7 @@ def _leaps(track: Track) -> list[str]:
     ]
 
 
-def _turned(track: Track) -> list[str]:
+def _exchanged(track: Track) -> list[str]:
     """Frames that are half a turn off those beside: two marks were taken for each other."""
     if track.angle is None:
         return []

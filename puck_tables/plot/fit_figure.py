@@ -168,7 +168,8 @@ def _draw_profile(panel: Axes, result: Fit, name: str) -> None:
     values = values - shift
     fine = np.linspace(values[0], values[-1], 100)
     panel.plot(values, rises, "o", color=BLUE, markersize=3)
-    powers = monotone_cubic(values, rises) if values[-1] > values[0] else rises[:1, None]
+    ascend = (np.diff(values) > 0.0).all()
+    powers = monotone_cubic(values, rises) if ascend else rises[:1, None]
     part = np.clip(np.searchsorted(values, fine, "right") - 1, 0, len(powers) - 1)
     panel.plot(fine, polyval(fine - values[part], powers[part].T, tensor=False), color=BLUE)
     error = float(result.certainty.errors[k])

@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
-from puck_tables.errors import PuckError
+from puck_tables.errors import ContactError, PuckError
 from puck_tables.scene.acting import acting
 from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.map_of_floor import MANY
@@ -199,7 +199,7 @@ class Shots:
         start = _finely(scene)
         self._first, place = start.states, np.argsort(start.order)
         self._disc = int(place[striker])
-        self._engine = _with_law_for(fastest, scene, start, self._disc)
+        self._engine = _law_for_launches(fastest, scene, start, self._disc)
         self._watch = int(place[puck]), int(place[through]) if through >= 0 else -1, most
         pucks = pucks_of(scene)
         self.patient = (
@@ -318,10 +318,10 @@ def _finely(scene: SceneSpec) -> Start:
     return start
 
 
-def _with_law_for(fastest: float, scene: SceneSpec, start: Start, disc: int) -> Engine:
-    """With friction laws by name for slips of a rim at its launch, as :class:`Shots` has them.
+def _law_for_launches(fastest: float, scene: SceneSpec, start: Start, disc: int) -> Engine:
+    """The engine with laws by name known for a rim that is launched at up to ``fastest``, m/s.
 
-    Runs that are faster than its law are followed one by one.
+    Runs that are faster are followed one by one.
     """
     sx, sy, turning = velocities_under(start.engine, start.states)[disc].tolist()
     floor = math.hypot(sx, sy) + pucks_of(scene)[start.order[disc]].radius * abs(turning)
@@ -330,5 +330,5 @@ def _with_law_for(fastest: float, scene: SceneSpec, start: Start, disc: int) -> 
         return start.engine
     try:
         return with_law_up_to(start.engine, scene, start.order, top, MANY)
-    except PuckError:  # it lifts part of a base: a run alone says so
+    except ContactError:  # it lifts part of a base: a run alone says so
         return start.engine
