@@ -83,18 +83,18 @@ def off(one: dict[str, Any], two: dict[str, Any], scale: np.ndarray, calm: np.nd
 
 def judged(
     scene: dict[str, Any], best: dict[str, Any], tol: float, folder: Path
-) -> tuple[str, float, str, int]:
-    """A word, the error over tol · max(1, amplification), why, the steps of the engine."""
+) -> tuple[str, float, str]:
+    """A word, the error over tol · max(1, amplification), and why."""
     run, words = engine(scene, tol, folder, best["times"])
     if run is None:
-        return "refused", np.inf, words, 0
+        return "refused", np.inf, words
     states = np.stack([run.columns[name] for name in NAMES], axis=1)
     short = len(states) < len(best["times"])
     allowed = tol * best["amplification"] + 10.0 * best["doubt"]
     if (run.end == "over the edge") != (best["end"] == "over the edge") and not short:
-        return "end", np.inf, f"{run.end} at {run.end_time:.9g}; truth: {best['end']}", run.steps
+        return "end", np.inf, f"{run.end} at {run.end_time:.9g}; truth: {best['end']}"
     if short and (run.end_time < best["times"][-1] - 10.0 * allowed * best["unit"]):
-        return "end", np.inf, f"{run.end} at {run.end_time:.9g}; truth: {best['end']}", run.steps
+        return "end", np.inf, f"{run.end} at {run.end_time:.9g}; truth: {best['end']}"
     count = len(states)
     room = max(1e-4, 30.0 * allowed) * best["unit"]
     calm = calm_at(best["times"], best["events"], room)[:count]
@@ -104,10 +104,10 @@ def judged(
     why = f"error {share * allowed:.2g}, allowed {allowed:.2g}"
     rests = best["events"][best["events"][:, 1] == REST]
     found = [event.time for event in run.events if event.what == "stick"]
-    if len(rests) and found and (run.end == "at rest" or not scene.get("wall")):
+    if run.end == "at rest" and len(rests) and found:
         # how long rebounds would have lasted that died out, to a factor of two
         after = 2.0 * (allowed + run.error_estimate)
         late = abs(found[-1] - rests[-1, 0]) / best["unit"] / after
         if late > share:
             share, why = late, f"rests at {found[-1]:.12g}; truth {rests[-1, 0]:.12g}"
-    return ("right" if share <= 1.0 else "wrong"), share, why, run.steps
+    return ("right" if share <= 1.0 else "wrong"), share, why
