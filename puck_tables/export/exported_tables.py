@@ -64,10 +64,9 @@ def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
         "SPIN_TIME": values.spin_time, "LONGEST": values.longest, "SIDES": sides,
     }  # fmt: skip
     tables, constants = _written(_fit_within(values, parts, tol), constants)
-    sign = np.where(np.arange(sides) % 2, -1.0, 1.0)
     lines = {
         "BORDERS": _short(values.borders), "ORIGINS": _short(values.origins),
-        "SCALES": _short(sign / values.extents),
+        "SCALES": _short(1.0 / values.extents),
     }  # fmt: skip
     if "state" in parts:
         constants |= {"REACH": REACH, "END": values.limit_motions.end}

@@ -104,19 +104,18 @@ class LawValues:
 
     @cached_property
     def extents(self) -> FloatArray:
-        """How far the sides reach from their marks (2 m − 2,), ascending."""
-        return np.repeat(0.5 * np.diff(self.marks), 2)
+        """How far the sides reach from their origins (m − 1,), ascending; negative: downwards."""
+        return np.diff(self.marks) * np.where(np.arange(self.marks.size - 1) > 0, -1.0, 1.0)
 
     @cached_property
     def origins(self) -> FloatArray:
-        """The mark of each side (2 m − 2,), ascending."""
-        return self.marks[(np.arange(self.extents.size) + 1) // 2]
+        """The mark from which each side is measured (m − 1,), ascending."""
+        return np.append(self.marks[:1], self.marks[2:])
 
     @cached_property
     def borders(self) -> FloatArray:
-        """C between the sides (2 m − 3,), ascending: marks and the middles between them."""
-        middles = 0.5 * (self.marks[1:] + self.marks[:-1])
-        return np.sort(np.append(middles, self.marks[1:-1]))
+        """C between the sides (m − 2,), ascending."""
+        return self.marks[1:-1]
 
     @cached_property
     def pucks(self) -> list[Puck]:
@@ -138,9 +137,8 @@ class LawValues:
     @cached_property
     def phi(self) -> FloatArray:
         """Slip angles of the nodes (sides, nodes)."""
-        sides = np.arange(self.extents.size)
-        sign = np.where(sides % 2, -1.0, 1.0)
-        off = (sign * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
+        xi = np.linspace(0.0, 1.0, NODES)
+        off = self.extents[:, None] * (xi * (2.0 - xi)) ** 2
         c = self.origins[:, None] + off
         phi = np.arctan2(1.0 + c, 1.0 - c)
         # next to pure sliding and pure spin from the distance
@@ -199,10 +197,10 @@ def _limit_motions(values: LawValues) -> LimitMotions:
         share = 2.0 * small / (1.0 + small)  # 1 − |c|
         c = np.where(u < 0.0, share - 1.0, 1.0 - share)
         sides = np.searchsorted(values.borders, c)
-        owner = (sides + 1) // 2
-        gap = np.where(sides == 0, share, np.abs(c - marks[owner]))
-        gap = np.where(sides == len(extents) - 1, share, gap)
-        place = np.sqrt(np.sqrt(np.minimum(gap / extents[sides], 1.0)))
+        gap = (c - values.origins[sides]) / values.extents[sides]
+        gap = np.where(sides == 0, share / values.extents[0], gap)
+        gap = np.where(sides == len(values.extents) - 1, -share / values.extents[-1], gap)
+        place = 1.0 - np.sqrt(1.0 - np.sqrt(np.clip(gap, 0.0, 1.0)))
         return np.array([float(splines[s][j](place[j])) for j, s in enumerate(sides)])
 
     def friction(u: FloatArray) -> tuple[Resultants, FloatArray]:
