@@ -1,9 +1,11 @@
 """What is exported of pucks under a pressure law: their stops, friction and orbits, at nodes.
 
 Places are those of c = (r|ω| − v)/(r|ω| + v) between *marks*: pure sliding, the lines where the
-centre of rotation crosses an edge of the load, pure spin.  Each mark has a side of its own up to
-the middle between it and the next, ξ⁴ = |c − mark|/extent.  Heights are a share of the largest
-under which the whole base stays loaded, :data:`puck_tables.contact.laws.Law.delta_max`.
+centre of rotation crosses an edge of the load, pure spin.  A side reaches from mark to mark, the
+first upwards, all others downwards: |c − origin| = extent · q², q = ξ (2 − ξ), with nodes close at
+both ends.  Friction is splined over q = 1 − (1 − ξ)⁴, closer still at the lines.  Heights are a
+share of the largest under which the whole base stays loaded,
+:data:`puck_tables.contact.laws.Law.delta_max`.
 
 All motions of a puck that slides and spins lie on two orbits, one from pure sliding and one from
 pure spin to the limit ratio.  With θ the logarithm of the time that is left,
@@ -25,6 +27,7 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
 
@@ -35,6 +38,7 @@ from puck_tables.contact.laws import Law
 from puck_tables.puck import Puck
 from puck_tables.stopping.lookup import heights
 from puck_tables.stopping.stop_section import stops_at
+from puck_tables.stopping.stop_table import StopTable
 
 NODES, HEIGHTS = 385, 14  # a side and over δ, to which the splines of a file are fitted
 REACH = 16.0  # of z, the scale along an orbit
@@ -134,11 +138,9 @@ class LawValues:
         """More than any motion lasts, Q/J."""
         return max(2.0, *(puck.body.longest for puck in self.pucks))
 
-    @cached_property
-    def phi(self) -> FloatArray:
-        """Slip angles of the nodes (sides, nodes)."""
-        xi = np.linspace(0.0, 1.0, NODES)
-        off = self.extents[:, None] * (xi * (2.0 - xi)) ** 2
+    def _angles(self, q: FloatArray) -> FloatArray:
+        """Slip angles (sides, nodes) at q (nodes,)."""
+        off = self.extents[:, None] * q**2
         c = self.origins[:, None] + off
         phi = np.arctan2(1.0 + c, 1.0 - c)
         # next to pure sliding and pure spin from the distance
@@ -149,27 +151,43 @@ class LawValues:
     @cached_property
     def patch(self) -> FloatArray:
         """p_a, p_b, p_d (sides, nodes, heights, 3), the same at all heights."""
-        p = self.law.integrals(self.phi.ravel())
-        patch = np.stack([p.a, p.b, p.d], axis=-1).reshape(*self.phi.shape, 1, 3)
-        return np.broadcast_to(patch, (*self.phi.shape, HEIGHTS, 3))
+        phi = self._angles(1.0 - (1.0 - np.linspace(0.0, 1.0, NODES)) ** 4)
+        p = self.law.integrals(phi.ravel())
+        patch = np.stack([p.a, p.b, p.d], axis=-1).reshape(*phi.shape, 1, 3)
+        return np.broadcast_to(patch, (*phi.shape, HEIGHTS, 3))
 
     @cached_property
     def stops(self) -> FloatArray:
         """T, along, across/δ, path length and body angle (sides, nodes, heights, 5)."""
+        if self.pucks[0].body.is_plain:
+            return _of_plain(StopTable.shipped())
         accuracy = max(_FINEST, _SHARE * self.tol)
-        result = []
+        result, xi = [], np.linspace(0.0, 1.0, NODES)
+        phi = self._angles(xi * (2.0 - xi))
         for puck in self.pucks:
             friction = puck.body.friction(0.1 * accuracy)
             section = friction.for_motion(puck.gyration)
-            stops = stops_at(puck.body, friction, section, self.phi.ravel(), accuracy)[:, :5]
+            stops = stops_at(puck.body, friction, section, phi.ravel(), accuracy)[:, :5]
             stops[:, 2] /= puck.delta
-            result.append(stops.reshape(*self.phi.shape, 5))
+            result.append(stops.reshape(*phi.shape, 5))
         return np.stack(result, axis=2)
 
     @cached_property
     def limit_motions(self) -> LimitMotions:
         """The two orbits, from pure sliding and from pure spin."""
         return _limit_motions(self)
+
+
+def _of_plain(table: StopTable) -> FloatArray:
+    """The stops of plain pucks from the table that comes along."""
+    n, xi = table.axis.cells, np.linspace(0.0, 1.0, NODES)
+    sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]], axis=1)[..., :5]
+    at_nodes = make_interp_spline(np.linspace(0.0, 1.0, n + 1), sides, 5)
+    known, wanted = (2.0 * heights(count) ** 2 - 1.0 for count in (sides.shape[2], HEIGHTS))
+    by_height = np.moveaxis(at_nodes(1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))), 2, 0)
+    series = chebyshev.chebfit(known, by_height.reshape(known.size, -1), known.size - 1)
+    values = chebyshev.chebval(wanted, series).T.reshape(HEIGHTS, *by_height.shape[1:])
+    return np.moveaxis(values, (0, 1), (2, 1))
 
 
 law_values = lru_cache(maxsize=8)(LawValues)  # one for all files of the same pucks and error
@@ -183,7 +201,7 @@ def _c(ratio: float) -> float:
 def _limit_motions(values: LawValues) -> LimitMotions:
     """The orbits of a law, from its marks and times to the stop."""
     law, inertia = values.law, values.pucks[0].body.inertia
-    marks, extents = values.marks, values.extents
+    marks = values.marks
     limits = np.array([_c(puck.limit_ratio) for puck in values.pucks])
     shares = heights(HEIGHTS)
     xi = np.linspace(0.0, 1.0, NODES)
