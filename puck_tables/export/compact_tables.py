@@ -25,7 +25,7 @@ CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4))
 _POWERS = 0.65  # of a share: what dropped powers may take
 # quanta that are tried, of the largest that rounding alone would allow; cells beyond the fewest
 _QUANTA, _MORE_CELLS = (0.15, 0.25, 0.4, 0.5, 0.65, 0.8, 1.0), 3
-_OUT_OF_REACH = "no table to export keeps an error of {:.1e}: ask for a larger one"
+_OUT_OF_REACH = "no table to export keeps an error of {:.1e} in some function: ask for a larger tol"
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,8 @@ class _Fits:
         by_power = (series_to_powers(powers) @ series[:powers]).reshape(powers, sides, nodes, -1)
         self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
         self._at_heights = s ** np.arange(powers)[:, None]
-        self._sizes = [one for one in CELLS if one < nodes // 4]
+        # between fewer nodes a spline may err by more than at them
+        self._sizes = [one for one in CELLS if one <= nodes // 8]
         self._solved: dict[tuple[int, int], FloatArray] = {}
 
     def quanta(self, degree: int) -> list[float]:

@@ -1,4 +1,4 @@
-"""What is exported of pucks under a pressure law: their stops, friction and orbits, at nodes.
+"""What is exported of pucks on round bases: their stops, friction and orbits, at nodes.
 
 Places are those of c = (r|ω| − v)/(r|ω| + v) between *marks*: pure sliding, the lines where the
 centre of rotation crosses an edge of the load, pure spin.  A side reaches from mark to mark, the
@@ -40,7 +40,8 @@ from puck_tables.stopping.lookup import heights
 from puck_tables.stopping.stop_section import stops_at
 from puck_tables.stopping.stop_table import StopTable
 
-NODES, HEIGHTS = 385, 14  # a side and over δ, to which the splines of a file are fitted
+HEIGHTS = 14  # over δ, to which the splines of a file are fitted
+_COARSE, _NODES, _FINE_NODES = 1e-8, 385, 769  # of a side: finer errors take more cells
 REACH = 16.0  # of z, the scale along an orbit
 TURN_UNIT = 1.5  # of headings: they take less of the error than places on the orbits do
 _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
@@ -101,6 +102,11 @@ class LawValues:
         """The largest δ."""
         return self.law.delta_max
 
+    @property
+    def xi(self) -> FloatArray:
+        """The nodes of a side (nodes,)."""
+        return np.linspace(0.0, 1.0, _NODES if self.tol > _COARSE else _FINE_NODES)
+
     @cached_property
     def marks(self) -> FloatArray:
         """C at the marks (m,)."""
@@ -151,7 +157,7 @@ class LawValues:
     @cached_property
     def patch(self) -> FloatArray:
         """p_a, p_b, p_d (sides, nodes, heights, 3), the same at all heights."""
-        phi = self._angles(1.0 - (1.0 - np.linspace(0.0, 1.0, NODES)) ** 4)
+        phi = self._angles(1.0 - (1.0 - self.xi) ** 4)
         p = self.law.integrals(phi.ravel())
         patch = np.stack([p.a, p.b, p.d], axis=-1).reshape(*phi.shape, 1, 3)
         return np.broadcast_to(patch, (*phi.shape, HEIGHTS, 3))
@@ -160,10 +166,9 @@ class LawValues:
     def stops(self) -> FloatArray:
         """T, along, across/δ, path length and body angle (sides, nodes, heights, 5)."""
         if self.pucks[0].body.is_plain:
-            return _of_plain(StopTable.shipped())
+            return _of_plain(StopTable.shipped(), self.xi)
         accuracy = max(_FINEST, _SHARE * self.tol)
-        result, xi = [], np.linspace(0.0, 1.0, NODES)
-        phi = self._angles(xi * (2.0 - xi))
+        result, phi = [], self._angles(self.xi * (2.0 - self.xi))
         for puck in self.pucks:
             friction = puck.body.friction(0.1 * accuracy)
             section = friction.for_motion(puck.gyration)
@@ -178,9 +183,9 @@ class LawValues:
         return _limit_motions(self)
 
 
-def _of_plain(table: StopTable) -> FloatArray:
+def _of_plain(table: StopTable, xi: FloatArray) -> FloatArray:
     """The stops of plain pucks from the table that comes along."""
-    n, xi = table.axis.cells, np.linspace(0.0, 1.0, NODES)
+    n = table.axis.cells
     sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]], axis=1)[..., :5]
     at_nodes = make_interp_spline(np.linspace(0.0, 1.0, n + 1), sides, 5)
     known, wanted = (2.0 * heights(count) ** 2 - 1.0 for count in (sides.shape[2], HEIGHTS))
@@ -204,7 +209,7 @@ def _limit_motions(values: LawValues) -> LimitMotions:
     marks = values.marks
     limits = np.array([_c(puck.limit_ratio) for puck in values.pucks])
     shares = heights(HEIGHTS)
-    xi = np.linspace(0.0, 1.0, NODES)
+    xi = values.xi
     splines = [
         [make_interp_spline(xi, side[:, j], 5) for j in range(HEIGHTS)]
         for side in values.stops[..., 0]

@@ -127,7 +127,7 @@ def export_source(
     tol : float
         Largest error, in units of Q/(fg) (times), Q²/(fg) (places), Q²/(fg r) (body angle), Q
         (velocity), Q/r (spin) and 1 (turn of the heading), Q = hypot(v, rω) of the launch; 1e-9 to
-        0.01. Of resultants 1; in closed form, 1e-14, for homogeneous pucks under uniform pressure.
+        0.01. Of resultants 1; in closed form, 1e-14, under uniform pressure.
     puck : Puck, optional
         Whose pressure law and radius of gyration the file is for; the height and all else are
         arguments of its functions.  Default: homogeneous, under uniform pressure.
@@ -145,7 +145,8 @@ def export_source(
         If a language or a part is not known.
     AccuracyError
         If the tolerance is out of reach: of states, where the limit ratio lies next to 0, to
-        infinity or to where the centre of rotation crosses an edge of the load.
+        infinity or to where the centre of rotation crosses an edge of the load; of stops, on a ring
+        below 3e-9, under Galin's law on a homogeneous puck below 1e-8.
 
     Notes
     -----

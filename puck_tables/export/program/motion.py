@@ -30,7 +30,7 @@ SMALLEST = 1e-300  # its reciprocal is still a number
 TURN_SHARE = 1e-3  # of Q: where the turn of a heading is read off
 ROUNDS = 12  # of Newton's method at most
 SEARCH, FARTHEST = 40, 1e3  # secants at most; more than any z is, where shares are numbers
-CLOSE, FAINT = 1e-3, 0.05  # of the error of a file: where a launch is found, from the limit
+CLOSE, FAINT = 0.01, 0.05  # of the error of a file: where a launch is found, from the limit
 # of a measured launch
 SLIP, SPEED, RIM, EAST, NORTH, SIDE, SHARE, AROUND = 0, 1, 2, 3, 4, 5, 6, 7
 MEASURED = 8  # the eight above
@@ -174,28 +174,32 @@ def know(delta: float, time: float, launch: Out) -> None:
     start: float = constant(START + fast, s)
     ahead: int = 1 if (c < start if fast == 1 else c > start) else 0
     wanted: float = abs(c - limit)
+    first: float = abs(start - limit)
+    least: float = FAINT * TOLERANCE
     if ahead == 0:
         wanted = launch[SHARE] if launch[SIDE] == fast else 2.0 - launch[SHARE]
-    least: float = FAINT * TOLERANCE if ahead == 1 else SMALLEST
+        first = 1.0 - start if fast == 1 else 1.0 + start
+        least = SMALLEST
     wanted = wanted if wanted > least else least
     close: float = CLOSE * TOLERANCE / (wanted if ahead == 1 else 1.0)
     branch: int = 2 * fast + ahead
     low: float = 0.0
     high: float = REACH * END * END / (1.0 - END) if ahead == 1 else FARTHEST
-    z: float = 0.0
-    slope: float = -1.0
+    before: float = log(first / wanted) if first > wanted else 0.0
+    z: float = before if before < high else high
     error: float = way_on(branch, z, s, wanted, f)
+    slope: float = (error - before) / z if z > 0.0 else -1.0
     n: int = 0
     while n < SEARCH and abs(error) > close:
         low = z if error > 0.0 else low
         high = high if error > 0.0 else z
+        slope = slope if slope < 0.0 else -1.0
         last: float = z
-        before: float = error
+        before = error
         z = z - error / slope
         z = z if z >= low and z <= high else 0.5 * (low + high)
         error = way_on(branch, z, s, wanted, f)
         slope = (error - before) / (z - last) if z != last else -1.0
-        slope = slope if slope < 0.0 else -1.0
         n = n + 1
     end: int = 2 if ahead == 1 else fast
     rate: float = constant(RATE + end, s)
