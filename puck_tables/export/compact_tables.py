@@ -21,7 +21,7 @@ from puck_tables.errors import AccuracyError
 from puck_tables.stopping.lookup import heights, series_to_powers
 
 DEGREES = range(3, 8)
-CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4))
+CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4), *range(104, 129, 8))
 _POWERS = 0.65  # of a share: what dropped powers may take
 # quanta that are tried, of the largest that rounding alone would allow; cells beyond the fewest
 _QUANTA, _MORE_CELLS = (0.15, 0.25, 0.4, 0.5, 0.65, 0.8, 1.0), 3

@@ -41,7 +41,7 @@ from puck_tables.stopping.stop_section import stops_at
 from puck_tables.stopping.stop_table import StopTable
 
 HEIGHTS = 14  # over δ, to which the splines of a file are fitted
-_COARSE, _NODES, _FINE_NODES = 1e-8, 385, 769  # of a side: finer errors take more cells
+_COARSE, _NODES, _FINE_NODES = 1e-8, 385, 1025  # of a side: finer errors take more cells
 REACH = 16.0  # of z, the scale along an orbit
 TURN_UNIT = 1.5  # of headings: they take less of the error than places on the orbits do
 _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
@@ -210,10 +210,7 @@ def _limit_motions(values: LawValues) -> LimitMotions:
     limits = np.array([_c(puck.limit_ratio) for puck in values.pucks])
     shares = heights(HEIGHTS)
     xi = values.xi
-    splines = [
-        [make_interp_spline(xi, side[:, j], 5) for j in range(HEIGHTS)]
-        for side in values.stops[..., 0]
-    ]
+    splines = [make_interp_spline(xi, side, 5) for side in values.stops[..., 0]]
 
     def time_at(u: FloatArray) -> FloatArray:
         small = np.exp(-np.abs(u))
@@ -224,7 +221,8 @@ def _limit_motions(values: LawValues) -> LimitMotions:
         gap = np.where(sides == 0, share / values.extents[0], gap)
         gap = np.where(sides == len(values.extents) - 1, -share / values.extents[-1], gap)
         place = 1.0 - np.sqrt(1.0 - np.sqrt(np.clip(gap, 0.0, 1.0)))
-        return np.array([float(splines[s][j](place[j])) for j, s in enumerate(sides)])
+        at_all = np.stack([np.diagonal(spline(place)) for spline in splines])
+        return np.take_along_axis(at_all, sides[None], axis=0)[0]
 
     def friction(u: FloatArray) -> tuple[Resultants, FloatArray]:
         phi = np.where(u > 0.0, 0.5 * np.pi - np.arctan(np.exp(-u)), np.arctan(np.exp(u)))
