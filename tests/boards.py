@@ -72,9 +72,9 @@ def draw_pucks(seed: int, count: int) -> pt.Scene:
 def judged(scene: pt.Scene) -> tuple[list[Disc], list[Line | Straight]]:
     """The same for the judge."""
     discs = [
-        Disc(p.radius, p.mass, p.friction, p.height, p.restitution, p.tangential, p.rim,
+        Disc(p.radius, p.mass, p.friction, p.height,
              np.array([*p.launch.position, p.launch.orientation, *(p.launch.velocity or (0.0, 0.0)),
-                       p.launch.spin]))
+                       p.launch.spin]), p.restitution, p.tangential, p.rim)
         for p in scene.pucks
     ]  # fmt: skip
     lines: list[Line | Straight] = []

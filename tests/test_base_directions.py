@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import thorough
 
 from puck_tables import Base, Floor, InputError, Launch, Orthotropic, Puck, Scene
 from puck_tables.world.floor_forces import friction_at
@@ -62,8 +63,13 @@ def judge(base: Base, axes: Orthotropic, height: float, state: Any) -> np.ndarra
     return -np.array([load @ tx, load @ ty, load @ (x * ty - y * tx)])
 
 
-@pytest.mark.parametrize("fixed_to", ["floor", "body"])
-@pytest.mark.parametrize("name", BASES)
+@pytest.mark.parametrize(
+    ("name", "fixed_to"),
+    [
+        ("box", "floor"), ("bar", "body"), ("L", "floor"), ("frame", "body"),
+        *map(thorough, ("box", "bar", "L", "frame"), ("body", "floor") * 2),
+    ],
+)  # fmt: skip
 def test_friction_is_that_of_points_over_the_base(name: str, fixed_to: str) -> None:
     rng, base = np.random.default_rng(5), BASES[name]
     corner = base.points()[0] - np.array(base.middle)

@@ -107,7 +107,7 @@ class UnderStribeck(Judge):
         return [(pull * along**n).sum(axis=1) for n in (1, 2, 3)]
 
 
-@pytest.mark.parametrize("velocity", [(1.0, 0.0), (0.2, 0.1)])
+@pytest.mark.parametrize("velocity", [thorough((1.0, 0.0)), (0.2, 0.1)])
 def test_rows_within_steps_keep_tol(velocity: tuple[float, float]) -> None:
     """A step is several pieces of the path: also where these are joined."""
     spin, g = 12.0, 9.80665
@@ -425,8 +425,9 @@ def test_where_it_turns_far_away_a_disc_or_half_of_it_is_what_points_sum(turn: f
         assert (np.abs(found - truth) < 1e-10 * unit).all(), (speed, w)
 
 
+@pytest.mark.parametrize("draws", [8, thorough(40)])
 @pytest.mark.parametrize("axes", [ALIKE, Ellipse(0.6, 0.05, 0.8, 0.6)])
-def test_arrays_give_what_the_kernel_gives_before_it_is_compiled(axes: Ellipse) -> None:
+def test_arrays_give_what_the_kernel_gives_before_it_is_compiled(axes: Ellipse, draws: int) -> None:
     def smooth(u: np.ndarray) -> np.ndarray:
         return 0.002 / (u + 0.06) + 0.006
 
@@ -434,7 +435,7 @@ def test_arrays_give_what_the_kernel_gives_before_it_is_compiled(axes: Ellipse) 
     rng = np.random.default_rng(4)
     for base in BASES.values():
         shape, outermost = packed(base, 0.0), base.points() - np.array(base.middle)
-        for _ in range(40):
+        for _ in range(draws):
             w, far = float(rng.choice([-5.0, 5.0])), 10.0 ** float(rng.uniform(-4.0, 2.0))
             rim = outermost[rng.integers(len(outermost))]
             slips = [(*(far * rng.normal(size=2) * 0.1), w), (w * rim[1], -w * rim[0], w)]

@@ -6,7 +6,9 @@ import csv
 import json
 import math
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import Result
 from commands import invoke
@@ -55,23 +57,31 @@ def test_none_found_is_an_answer_without_a_picture(tmp_path: Path) -> None:
 
 
 def test_odds_are_those_of_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(aimed, "odds_of", lambda *given: odds_of(*given[:-2], 400, given[-1]))
+    asked: list[tuple[Any, ...]] = []  # what the library computes once, and the command asks for
+
+    def answered(*given: Any) -> Any:
+        asked.append(given[2:])
+        return odds_of(*given[:-2], 400, given[-1]) if len(asked) == 1 else odds
+
+    monkeypatch.setattr(aimed, "odds_of", answered)
     board = Scene(pucks=[Puck(0.03, friction=0.1)], edges=[Edge((0.82, 0.0), normal=(-1, 0))])
     (tmp_path / "table.toml").write_text(
         "[[puck]]\nradius = 0.03\nfriction = 0.1\n"
         "[[edge]]\npoint = [0.82, 0.0]\nnormal = [-1.0, 0.0]\n"
     )
-    asked = ("--scene", str(tmp_path / "table.toml"), "--target", "0.8,0", "--w0", "0")
-    asked = (*asked, "--odds", "speed=0.05", "--odds", "heading=1deg", "--within", "10cm")
-    told = json.loads(aim(*asked, "--json").stdout)["odds"]
+    words = ("--scene", str(tmp_path / "table.toml"), "--target", "0.8,0", "--w0", "0",
+             "--odds", "speed=0.05", "--odds", "heading=1deg", "--within", "10cm")  # fmt: skip
     found = board.aim((0.8, 0.0), spin=0.0)
     odds = found.odds(speed=0.05, heading=math.radians(1.0), within=0.1)
+    told = json.loads(aim(*words, "--json").stdout)["odds"]
     assert told["nominal"] == odds.nominal._asdict() and told["best"] == odds.best._asdict()
     assert told["velocity"] == list(odds.velocity)
-    words = aim(*asked).stdout.rstrip().splitlines()[-2:]
-    assert words == str(odds).splitlines()
-    assert words[0].startswith("scattered so, the launch does it with a chance of 0.")
-    assert words[1].startswith(f"the best aim found, {math.hypot(*odds.velocity):.6g} m/s, heading")
+    said = aim(*words).stdout.rstrip().splitlines()[-2:]
+    for given in asked[1:]:
+        assert all(np.array_equal(one, other) for one, other in zip(given, asked[0], strict=True))
+    assert len(asked) == 3 and said == str(odds).splitlines()
+    assert said[0].startswith("scattered so, the launch does it with a chance of 0.")
+    assert said[1].startswith(f"the best aim found, {math.hypot(*odds.velocity):.6g} m/s, heading")
 
 
 @pytest.mark.parametrize(

@@ -252,7 +252,8 @@ def test_what_a_file_does_not_tell_is_said(tmp_path: Path):
     assert found.untold() == said
     whys = [run["why"] for run in found.summary()["runs"]]
     assert whys == [None, *(one[7:] for one in said)]
-    assert all(one in str(found) and escape(one) in page(found) for one in said)
+    words, text = str(found), page(found)
+    assert all(one in words and escape(one) in text for one in said)
     assert "carried on by it" in str(compare(of_the_belt(tmp_path / "e.csv"), "belt"))
 
 

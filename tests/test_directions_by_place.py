@@ -119,7 +119,7 @@ def body(shape: str, height: float) -> pt.Puck:
     return pt.Puck(**base, friction=0.2, height=height, mass=1.0, gravity=1.0)
 
 
-@pytest.mark.parametrize("height", [0.0, 0.04])
+@pytest.mark.parametrize("height", [thorough(0.0), 0.04])
 @pytest.mark.parametrize("shape", ["box", "round"])
 @pytest.mark.parametrize("name", FLOORS)
 @pytest.mark.parametrize("seed", [11, thorough(12)])
@@ -136,8 +136,8 @@ def test_friction_is_that_of_points_on_rays(seed, name, shape, height):
 
 
 MOTIONS = [("a sole on half of it, felt on the other", "round", 0.03),
-           ("felt in a sole beside wood", "box", 0.02),
            ("ice", "round", 0.03),
+           thorough("felt in a sole beside wood", "box", 0.02),
            thorough("grooves", "box", 0.0)]  # fmt: skip
 
 
@@ -207,7 +207,8 @@ def test_a_patch_holds_by_the_friction_along_the_slope(shape: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("shape", "height", "wood"), [("box", 0.0, WOOD), ("round", 0.03, WOOD), ("round", 0.0, ICY)]
+    ("shape", "height", "wood"),
+    [thorough("box", 0.0, WOOD), thorough("round", 0.03, WOOD), ("round", 0.0, ICY)],
 )
 def test_axes_of_a_turntable_turn_with_it(shape: str, height: float, wood: Any) -> None:
     thrown, turning, cx = body(shape, height), 2.5, 0.1

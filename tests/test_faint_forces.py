@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from rarely import thorough
 
 import puck_tables as pt
 
@@ -37,10 +38,11 @@ def passed(parts, radius, velocity, force):
     return [e[:2] for e in events], np.array([e[2] for e in events])
 
 
+@pytest.mark.parametrize("draws", [4, thorough(12)])
 @pytest.mark.parametrize("kind", ["strip", "round patch", "polygon", "arc", "line", "ring"])
-def test_all_is_passed_that_is_passed_without_it(kind):
+def test_all_is_passed_that_is_passed_without_it(kind, draws):
     seen = 0
-    for draw in range(12):
+    for draw in range(draws):
         rng = np.random.default_rng(draw)
         parts, radius = board(kind, rng), 10.0 ** rng.uniform(-2.0, -1.0)
         heading, speed = rng.uniform(-0.08, 0.08), 10.0 ** rng.uniform(-0.3, 0.6)
@@ -53,7 +55,7 @@ def test_all_is_passed_that_is_passed_without_it(kind):
             others, then = passed(parts, radius, velocity, way)
             assert others == names, (draw, force)
             np.testing.assert_allclose(then, times, rtol=0.0, atol=1e-8)
-    assert seen >= 12
+    assert seen >= draws
 
 
 STRIPS = pt.Strips(borders=(0.1, 0.2), friction=(0.2, 0.1, 0.3))

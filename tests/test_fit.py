@@ -11,8 +11,7 @@ from rarely import few, nightly
 
 import puck_tables as pt
 from puck_tables.fitting.forward_model import Moving, states_and_slopes, states_of
-from puck_tables.fitting.least_squares import compact
-from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, compact
 from puck_tables.fitting.unit_motions import TallMotions, unit_motions_of
 from puck_tables.plot.fit_figure import draw
 
@@ -72,7 +71,7 @@ def test_errors_stated_are_the_bound_and_the_truth_lies_within(true):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "angles", "seed"), few(2, [(0.0, True, 100), (0.05, True, 200), (0.0, False, 300)])
+    ("wrong", "angles", "seed"), few(1, [(0.05, True, 200), (0.0, True, 100), (0.0, False, 300)])
 )
 def test_estimates_scatter_as_the_bound_says(true, wrong, angles, seed):
     off, inside = pulls(true, 25, seed, wrong, angles)

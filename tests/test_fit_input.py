@@ -241,7 +241,7 @@ def test_what_is_no_track_is_refused(tracks):
     [
         (0.04, -1.0, "if angles, or y, grew the other way"),
         (0.04, 180.0 / math.pi, "if angles were in degrees"),
-        (0.04, math.pi / 180.0, "if angles were in rad"),
+        thorough(0.04, math.pi / 180.0, "if angles were in rad"),
         (0.06, 1.0, "with a radius of 0.04 m (said to be 0.06 m)"),
         (0.04, 1.0, ""),
     ],

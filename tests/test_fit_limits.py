@@ -11,7 +11,7 @@ from film_judge import G
 from rarely import few
 
 import puck_tables as pt
-from puck_tables.fitting.fit_files import puck_and_launch
+from puck_tables.fitting.numbers import puck_and_launch
 
 NOISE = (0.3e-3, 5e-3)
 
@@ -132,7 +132,7 @@ def test_a_fit_that_runs_away_is_no_answer(seed, tmp_path):
     assert not bound.astray and abs(bound.launch().spin) <= 60.0
 
 
-@pytest.mark.parametrize("seed", few(3, range(40)))
+@pytest.mark.parametrize("seed", few(1, range(40)))
 def test_places_on_a_grid_are_no_noise_and_that_is_said(seed):
     rng = np.random.default_rng([35, 6, seed])
     radius, friction = rng.uniform(0.02, 0.05), rng.uniform(0.05, 0.4)

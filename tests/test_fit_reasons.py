@@ -10,7 +10,7 @@ import impacts_judge
 import numpy as np
 import pytest
 from film_judge import G
-from rarely import few
+from rarely import few, thorough
 from test_fit_speed import FLAT, film, slid
 
 import puck_tables as pt
@@ -70,7 +70,7 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
     assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
 
 
-@pytest.mark.parametrize("seed", few(2, range(20)))
+@pytest.mark.parametrize("seed", few(1, range(20)))
 def test_a_mark_a_little_off_the_centre_is_named_first(seed):
     """Five times the noise: a level table was blamed for it."""
     rng = np.random.default_rng([35, 120, seed])
@@ -86,7 +86,7 @@ def test_a_mark_a_little_off_the_centre_is_named_first(seed):
     assert "off the centre" in found.misfit.split("; or ")[0]
 
 
-@pytest.mark.parametrize("seed", few(2, range(20)))
+@pytest.mark.parametrize("seed", few(1, range(20)))
 def test_angles_that_turn_the_other_way_are_named_first(seed):
     """As y grows down an image; a slope alone was blamed for the path, which follows the spin."""
     rng = np.random.default_rng([47, seed])
@@ -99,7 +99,9 @@ def test_angles_that_turn_the_other_way_are_named_first(seed):
     assert any(text.startswith("delta") and "other way" in text for text in found.remarks)
 
 
-@pytest.mark.parametrize(("part", "words"), [(2, "half a turn"), (4, "a quarter of a turn")])
+@pytest.mark.parametrize(
+    ("part", "words"), [(2, "half a turn"), thorough(4, "a quarter of a turn")]
+)
 def test_angles_of_a_bar_or_a_square_are_told(part, words):
     """As image libraries give them: some floor was blamed."""
     rng, times, period = np.random.default_rng(part), np.arange(96) / 160.0, 2.0 * math.pi / part

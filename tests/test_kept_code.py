@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rarely import few
+from rarely import few, thorough
 
 from puck_tables._core.own_folder import _said, make_private, refuse_shared
 from puck_tables._core.sources import source_digest
@@ -67,7 +67,8 @@ def compiled() -> Any:
     return kernel(third)
 
 
-def test_every_flipped_bit_is_compiled_anew(folder: Path):
+@pytest.mark.parametrize(("some", "drawn"), [(5, 4), thorough(1, 40)])
+def test_every_flipped_bit_is_compiled_anew(some: int, drawn: int, folder: Path):
     assert compiled()(6.0) == 2.0
     (path,) = folder.iterdir()
     whole = path.read_bytes()
@@ -75,7 +76,7 @@ def test_every_flipped_bit_is_compiled_anew(folder: Path):
     assert again(6.0) == 2.0
     assert sum(again.compiled.stats.cache_hits.values()) == 1  # what is whole is used
     rng = np.random.default_rng(9)
-    for position in [*range(40), *rng.integers(40, len(whole), 40), len(whole) - 1]:
+    for position in [*range(0, 40, some), *rng.integers(40, len(whole), drawn), len(whole) - 1]:
         harmed = bytearray(whole)
         harmed[position] ^= 1 << rng.integers(8)
         path.write_bytes(harmed)
@@ -94,6 +95,7 @@ def test_what_is_no_compiled_code_is_replaced(content: bytes, folder: Path):
     assert len(path.read_bytes()) > 1000
 
 
+@pytest.mark.thorough
 def test_a_function_of_somebody_else_may_call_what_is_kept(tmp_path: Path):
     for first in ("", *["section_at(coefficients, 0.5, out)"] * 2):  # alone, beside, and read
         run(tmp_path, [sys.executable, "-c", LINKED.format(first)], 0.25)
@@ -222,6 +224,7 @@ def test_the_users_cache_is_judged_alike(tmp_path, monkeypatch, request):
     assert "no table x is kept" in refused.stderr
 
 
+@pytest.mark.thorough
 def test_nothing_appears_beside_the_package_where_no_folder_will_do(tmp_path: Path):
     """numba's own cache would turn to __pycache__ there, and serve stale code after edits."""
     from conftest import ROOT
@@ -307,6 +310,7 @@ BEGIN = {
 }  # fmt: skip
 
 
+@pytest.mark.thorough
 def test_code_for_all_machines_is_made_on_one(tmp_path: Path):
     """What it makes for this one is run in place of what numba would compile."""
     from conftest import ROOT

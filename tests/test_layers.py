@@ -87,6 +87,7 @@ DOORS = {
 }  # fmt: skip
 
 
+parsed = cache(ast.parse)
 # a text that could name a module, or with a dot at its end all in a room
 NAMED = re.compile(r"[\"'](puck_tables\.|[a-z_0-9]+(?:\.[a-z_0-9]+)+\.?)[\"'{:]")
 _BLOCKS = (ast.stmt, ast.excepthandler, ast.match_case)
@@ -111,7 +112,7 @@ def imports_of(path: Path) -> tuple[Import, ...]:
     source = path.read_text(encoding="utf-8")
     texts = [("puck_tables." + one.removeprefix("puck_tables."), "text") for one in
              NAMED.findall(source)]  # fmt: skip
-    return (*_statements(ast.parse(source), path), *texts)
+    return (*_statements(parsed(source), path), *texts)
 
 
 def _statements(tree: ast.Module, path: Path) -> Iterator[Import]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from judges import edge_judge
+from rarely import thorough
 from test_base_over_edge import BOX, BY_GRIP, CORNERS, DECEL, WOOD, follow, thrown
 
 from puck_tables import (
@@ -34,10 +35,11 @@ NONE = [np.array([1.0, 0.0, -9.0])]  # an edge far away
 LIFTED = replace(BOX, height=0.25)  # from 0.0994 m on it lifts
 
 
+@pytest.mark.parametrize("seeds", [2, thorough(20)])
 @pytest.mark.parametrize("grip", BY_GRIP)
-def test_friction_is_that_of_the_judge(grip: Any):
+def test_friction_is_that_of_the_judge(grip: Any, seeds: int):
     for times in (1.1, 2.0, 3.0):
-        for seed in range(20 if grip is None else 6):
+        for seed in range(seeds):
             rng, base, about, _ = thrown(seed, 1)
             lever = times * base.highest_lever
             puck = Puck(base=base, friction=0.3, mass=2.0, height=lever / 0.15)

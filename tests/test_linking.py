@@ -17,12 +17,21 @@ import numba
 import numpy as np
 import pytest
 
-from puck_tables.kernels import compiled, quick_compiler
+from puck_tables.kernels import compiled, kept_code, quick_compiler
 from puck_tables.kernels.compile import Door, inlined, inner, kernel, look_up, on_demand
 from puck_tables.kernels.compiled import dispatcher_of
 from puck_tables.kernels.linking import Behind, Pasted
 from puck_tables.kernels.records import Record
 from puck_tables.world.group import Scales, buffer_for
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_folder(tmp_path_factory: pytest.TempPathFactory):
+    """What an earlier run kept would not be compiled."""
+    folder = tmp_path_factory.mktemp("compiled")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(kept_code, "cache_folder", lambda: folder)
+        yield
 
 
 @inlined
@@ -262,6 +271,7 @@ print(doors_here.outside(np.arange(4.0)), sum(doors_here.outside.compiled._cache
 """
 
 
+@pytest.mark.thorough
 def test_a_door_behind_a_door_is_called_where_it_is_and_may_be_compiled_anew(tmp_path: Path):
     """Its symbol is another one in each process: whoever is read finds it by address."""
     (tmp_path / "doors_here.py").write_text(_DOORS)

@@ -206,6 +206,7 @@ def test_titles_are_drawn_as_they_stand(drawn: Any, title: str) -> None:
     assert drawn(sweep_scene(tables)).get_suptitle() == title
 
 
+@pytest.mark.thorough
 def test_the_examples_of_asperity_show_all_that_happens() -> None:
     from puck_tables.cli.asperity import asperity
 

@@ -19,7 +19,7 @@ every_page = pytest.mark.parametrize("page", PAGES)
 # their commands take long
 LONG = (
     "curling.md", "fits.md", "command-line.md", "several-pucks.md", "explorer.md", "scenes.md",
-    "export.md", "paths.md",
+    "export.md", "paths.md", "sweeps.md",
 )  # fmt: skip
 
 
@@ -56,7 +56,10 @@ def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyP
                 assert mine == pytest.approx(theirs, rel=1e-7)
 
 
-@every_page
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(name, marks=[pytest.mark.thorough] * (name == "export.md")) for name in PAGES],
+)
 def test_library_examples(page: str):
     found = doctest.testfile(str(PAGES[page]), module_relative=False, encoding="utf-8")
     assert found.attempted == len(re.findall(r"^ *>>> ", TEXTS[page], re.MULTILINE))

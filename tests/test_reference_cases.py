@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from any_puck import stops_by_truth
 from base_judge import Judge
-from pucks_judge import Disc, Line, play
+from pucks_judge import Disc, Floor, Line, play
 from rarely import thorough
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
@@ -245,14 +245,14 @@ def discs_of_the_take_out() -> list[Disc]:
         # the judge has its own gravity
         f = one["friction"] * one["gravity"] / 9.80665
         height = one["height"] * one["friction"] / f
-        discs.append(Disc(one["radius"], one["mass"], f, height, one["restitution"],
-                          one["tangential"], one["rim"], state))  # fmt: skip
+        discs.append(Disc(one["radius"], one["mass"], f, height, state, one["restitution"],
+                          one["tangential"], one["rim"]))  # fmt: skip
     return discs
 
 
 def test_the_take_out_by_an_independent_integrator():
     """Within its own bound, up to the judge's threshold of rest."""
-    told = play(discs_of_the_take_out(), [], 2.0)
+    told = play(Floor(), discs_of_the_take_out(), [], 2.0)
     answer = reference_case("take-out")
     assert answer.share_bound <= 1e-10
     assert len(told.impacts) == 1
@@ -264,7 +264,7 @@ def test_the_take_out_by_an_independent_integrator():
 @pytest.mark.parametrize("time", [0.1, 0.35])
 def test_the_take_out_on_its_way(time: float):
     """Places, angles, velocities and spins before and after the impact, within the bounds."""
-    truth = play(discs_of_the_take_out(), [], time).states
+    truth = play(Floor(), discs_of_the_take_out(), [], time).states
     answer = reference_case("take-out")
     ours = answer([time])
     r, place = answer.pucks[0].radius, answer.place_bound
@@ -278,7 +278,7 @@ def test_the_take_out_on_its_way(time: float):
 def test_each_puck_of_the_take_out_has_a_stop_of_its_own():
     """The judge's red still slips five milliseconds before, by about J times that."""
     answer = reference_case("take-out")
-    red = play(discs_of_the_take_out(), [], answer.end_time_of(0) - 5e-3).states[0]
+    red = play(Floor(), discs_of_the_take_out(), [], answer.end_time_of(0) - 5e-3).states[0]
     assert math.hypot(*red[3:5], 0.05 * red[5]) == pytest.approx(5e-3 * 0.2 * 9.81, rel=0.2)
     assert answer.end_time_of(0) < answer.end_time_of(1) == answer.end_time
 
@@ -289,10 +289,10 @@ def test_the_rebound_by_an_independent_integrator():
     f = one["friction"] * one["gravity"] / 9.80665
     state = np.array([0.0, 0.0, 0.0, *launch["velocity"], launch["spin"]])
     height = one["height"] * one["friction"] / f
-    disc = Disc(one["radius"], one["mass"], f, height, 1.0, 0.0, math.inf, state)
+    disc = Disc(one["radius"], one["mass"], f, height, state, 1.0, 0.0)
     line = Line((-1.0, 0.0), -wall["point"][0], wall["restitution"], wall["tangential"],
                 wall["friction"])  # fmt: skip
-    told, answer = play([disc], [line], 2.0), reference_case("rebound")
+    told, answer = play(Floor(), [disc], [line], 2.0), reference_case("rebound")
     assert abs(told.impacts[0][0] - answer.run.events[0].time) < 1e-10
     last = answer.last()
     assert np.abs(told.states[0, :2] - [last["x"], last["y"]]).max() < 1e-9

@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from commands import invoke
+from rarely import thorough
 from scenes import simulate_scene
 from scipy.integrate import quad, solve_ivp
 
@@ -176,7 +177,7 @@ def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch)
 TALL, ANNULUS = pt.Puck(0.04, height=0.02), pt.Puck(0.04, pressure="annulus:0.6")
 
 
-@pytest.mark.parametrize("puck", [TALL, ANNULUS])
+@pytest.mark.parametrize("puck", [TALL, thorough(ANNULUS)])
 def test_many_launches_look_up_the_law_that_a_few_sum(puck, monkeypatch):
     monkeypatch.setattr(map_of_floor, "MANY", 5000)
     floor, launch = pt.Floor(law=pt.StribeckLaw(0.3, 0.1, speed=0.2)), pt.Launch((0.8, 0.1))
@@ -213,7 +214,7 @@ def test_a_tolerance_that_the_corners_do_not_allow_is_refused_with_one_that_they
     assert simulate_scene({**scene, "tol": tol}).end == "at rest"
 
 
-@pytest.mark.parametrize("pressure", ["uniform", "hertz"])
+@pytest.mark.parametrize("pressure", ["uniform", thorough("hertz")])
 def test_a_law_holds_up_to_the_speed_that_it_says(pressure: str):
     """It was refused there, "ends at 2 m/s"; a sweep said that the run may never stop."""
     floor = pt.Floor(law=[[0.0, 0.3], [1.0, 0.2], [2.0, 0.1]])

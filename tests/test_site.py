@@ -11,6 +11,7 @@ import click
 import pytest
 from conftest import ROOT
 from puck_tables.cli.main import main
+from test_layers import parsed
 
 import puck_tables
 from puck_tables._core.colours import LEAST_CONTRAST, contrast, is_colour
@@ -27,7 +28,7 @@ ONE_SHELL = re.compile(r"['`\\^%&|;<!~*?{}$]")
 
 def docstrings() -> Iterator[tuple[str, str]]:
     for path in SOURCES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(parsed(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef | ast.ClassDef):
                 yield f"{path.relative_to(ROOT)}: {node.name}", ast.get_docstring(node) or ""
 
@@ -54,7 +55,7 @@ def test_prose_is_no_parameter_and_no_error() -> None:
 def test_parameters_that_are_told_are_there() -> None:
     missed = []
     for path in SOURCES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(parsed(path.read_text(encoding="utf-8"))):
             if not isinstance(node, ast.FunctionDef) or node.args.kwarg:
                 continue
             given = node.args

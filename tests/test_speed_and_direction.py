@@ -98,13 +98,13 @@ def slip_about(rng: np.random.Generator, base: Base, number: int) -> tuple[float
     return w * cy, -w * cx, w
 
 
-@pytest.mark.parametrize("first", [0, *map(thorough, (10, 20, 30))])
+@pytest.mark.parametrize("numbers", [range(5), thorough(range(5, 40))])
 @pytest.mark.parametrize("name", BASES)
-def test_sums_are_those_of_points_on_rays(name: str, first: int) -> None:
+def test_sums_are_those_of_points_on_rays(name: str, numbers: range) -> None:
     """The largest gap of 200 is 8e-11 of f N, where the moments of a law are good to 1e-11."""
-    rng, base = np.random.default_rng([3, first]), BASES[name]
+    rng, base = np.random.default_rng([3, len(numbers)]), BASES[name]
     packs = {law: packed_law(*law_moments(law, law.pieces(TOP)[0])) for law in LAWS}
-    for number in range(first, first + 10):
+    for number in numbers:
         law, ratio = list(LAWS)[number % 3 % 2], 10.0 ** rng.uniform(-1.52, 1.52)
         ratio = (0.03, 1.0 / 0.03, ratio, ratio)[number % 4]
         pair, angle = (min(1.0, ratio), min(1.0, 1.0 / ratio)), float(rng.uniform(0.0, math.pi))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from commands import invoke
-from rarely import few, nightly
+from rarely import few, nightly, thorough
 from scipy.integrate import quad
 
 from puck_tables import SpeedLaw, Table, resultants
@@ -72,7 +72,7 @@ def brute(phi: float, speed: float, law) -> list[float]:
 @pytest.mark.parametrize(
     ("phi", "speed", "law"),
     [
-        (0.4, 0.6, stribeck), (1.1, 0.6, stribeck), (0.6, 0.9, LINEAR),
+        (0.4, 0.6, stribeck), (1.1, 0.6, stribeck), thorough(0.6, 0.9, LINEAR),
         nightly(1.2, 1.1, CUBIC),
     ],
     ids=["outside", "inside", "corners", "knots"],

@@ -123,8 +123,14 @@ def test_a_constant_coefficient_is_that_of_the_pressure_at_every_height(pressure
     table.refuse_height(0.99 * law.delta_max / 0.4)
 
 
-@pytest.mark.parametrize(("law", "off"), [(ICE, 2e-8), (ROWS, 5e-6)], ids=["smooth", "corners"])
-@pytest.mark.parametrize(("inner", "outer"), [(0.0, 0.4), (0.3, 1.0), (0.383, 0.438)])
+@pytest.mark.parametrize(
+    ("law", "off", "inner", "outer"),
+    [
+        (ICE, 2e-8, 0.0, 0.4), (ROWS, 5e-6, 0.3, 1.0), thorough(ICE, 2e-8, 0.3, 1.0),
+        thorough(ROWS, 5e-6, 0.0, 0.4), thorough(ICE, 2e-8, 0.383, 0.438),
+        thorough(ROWS, 5e-6, 0.383, 0.438),
+    ],
+)  # fmt: skip
 def test_under_an_annulus_it_is_the_sum_along_the_contour(law, off, inner, outer):
     """Whose panels do not end where the slip is that of a corner: 1e-6 is theirs."""
     base = Base.annulus(outer, inner) if inner else Base.disc(outer)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rarely import thorough
 from rays_judge import border, points_on_rays
 from scipy.optimize import root
 
@@ -64,8 +65,10 @@ def judged(state: Any, puck: pt.Puck, inner: float, floor: pt.Floor) -> np.ndarr
     return -np.array([tx.sum(), ty.sum(), (x * ty - y * tx).sum()])
 
 
-@pytest.mark.parametrize("inner", [0.0, 0.03])
-@pytest.mark.parametrize("on", ["strips", "patch"])
+@pytest.mark.parametrize(
+    ("on", "inner"),
+    [("strips", 0.0), ("patch", 0.03), thorough("strips", 0.03), thorough("patch", 0.0)],
+)
 def test_friction_is_that_of_points_on_rays(on: str, inner: float) -> None:
     rng = np.random.default_rng(7)
     floor = pt.Floor(strips=HALVES) if on == "strips" else pt.Floor(patches=[SPOT])

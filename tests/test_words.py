@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 import pytest
-from test_layers import modules
+from test_layers import modules, parsed
 
 # Rooms that keep to the words; one that is clean is put here, and none is taken out.
 CLEAN = """
@@ -89,7 +89,7 @@ def is_number(value: ast.AST | None) -> bool:
 def bare_constants(source: str) -> Iterator[str]:
     """Constants without a comment in their lines, above, or above their unbroken group."""
     lines, said, after = source.splitlines(), False, 0
-    for node in ast.parse(source).body:
+    for node in parsed(source).body:
         if not isinstance(node, ast.Assign | ast.AnnAssign):
             after = 0
             continue
@@ -103,7 +103,7 @@ def bare_constants(source: str) -> Iterator[str]:
 
 def dependent_docstrings(source: str) -> Iterator[str]:
     """Docstrings that cannot be read alone."""
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(parsed(source)):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
             text = ast.get_docstring(node) or ""
             if text.startswith(("The same", "Those", "Another", "As ")):
@@ -129,7 +129,7 @@ def test_names_are_of_the_field(room: str):
     bad = {
         f"{file}: {name}": [f"say {REFUSED[word]} for {word}" for word in refused_in(name)]
         for file, path in files.items()
-        for name in {file.rpartition(".")[2], *names_in(ast.parse(path.read_text("utf-8")))}
+        for name in {file.rpartition(".")[2], *names_in(parsed(path.read_text("utf-8")))}
         if refused_in(name)
     }
     assert not bad

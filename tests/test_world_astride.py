@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from boards import puck_at
-from floors_judge import Disc, Floor, play
+from pucks_judge import Disc, Floor, play
 from scipy.integrate import quad
 from scipy.optimize import brentq
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from boards import puck_at
-from floors_judge import Disc, Floor, Line, blade, pivot, play, rail
+from pucks_judge import Disc, Floor, Line, blade, pivot, play, rail
 
 import puck_tables as pt
 from puck_tables.world.engine_state import N_LOOKS

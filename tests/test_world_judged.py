@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from boards import draw, draw_pucks, judged
-from pucks_judge import Straight, play
+from pucks_judge import Floor, Straight, play
 from rarely import few
 
 import puck_tables as pt
@@ -42,7 +42,7 @@ def agree_with_the_judge(scene: pt.Scene) -> None:
     discs, lines = judged(scene)
     # beyond our last one it need not look; one that is missed lies before, or is not among ours
     until = ours[2][0] + 1e-3 if len(ours) == 3 else ours[-1][0] + 0.05 if ours else 0.5
-    truth = play(discs, lines, until, most=len(ours) + (len(ours) < 3)).impacts
+    truth = play(Floor(), discs, lines, until, most=len(ours) + (len(ours) < 3)).impacts
     assert [row[1:] for row in truth] == [row[1:] for row in ours]
     for (time, *_), (other, *_) in zip(truth, ours, strict=True):
         assert abs(time - other) < 1e-9

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from boards import draw, hexagon, judged
-from pucks_judge import play
+from pucks_judge import Floor, play
 
 import puck_tables as pt
 from benchmarks.step_engines import Played, play_box2d, play_pymunk
@@ -78,7 +78,7 @@ def test_carrom_break(measure: Any, gap: float) -> None:
     measure.benchmark.extra_info["impacts"] = until_rest(world)
     if gap > 0.0:
         first = [e.time for e in world.copy().advance(math.inf) if e.what == "impact"][:3]
-        truth = play(*judged(carrom(gap)), first[-1] + 1e-3, most=3).impacts
+        truth = play(Floor(), *judged(carrom(gap)), first[-1] + 1e-3, most=3).impacts
         error = max(abs(a - b[0]) for a, b in zip(first, truth, strict=True))
     name = "men touch" if gap == 0.0 else f"men {1e3 * gap:g} mm apart"
     measure(name, lambda: until_rest(world), unit="game", error=error)

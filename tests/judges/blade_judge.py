@@ -10,21 +10,17 @@ friction among F and T.  Steps are in dt/Q, Q the slip: none is next to nothing.
 holds while what it must give lies within the curve of what it has in a slip along the blade.
 
 The allowed error of the end and of the last stop is tol times the measured amplification.
-
-python tests/judges/blade_judge.py --count 40 --seed 1 --tol 1e-6 --tol 1e-9
 """
 
 from __future__ import annotations
 
 import math
-import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from contact_truth import tabled, tabled_friction
-from report import arguments, engine, table
+from report import engine
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -315,40 +311,3 @@ def judged(
         share = max(share, off / best["unit"] / allowed)
     why = f"amplification {best['amplification']:.3g}, doubt {best['doubt']:.1g}, {run.steps} steps"
     return ("right" if share <= 1.0 else "wrong"), share, why, run.steps
-
-
-def main() -> None:
-    args = arguments(__doc__, [1e-6, 1e-9])
-    rows: dict[float, list[float]] = {tol: [0, 0, 0, 0.0, 0] for tol in args.tol}
-    faults, clock, doubt, grown = [], time.perf_counter(), 0.0, 0.0
-    with tempfile.TemporaryDirectory() as folder:
-        for index in range(args.count):
-            scene = draw(args.seed, index)
-            best = known(scene)
-            doubt, grown = max(doubt, best["doubt"]), max(grown, best["amplification"])
-            for tol in args.tol:
-                word, share, why, steps = judged(scene, best, tol, Path(folder))
-                row = rows[tol]
-                row[0] += 1
-                row[1] += word == "wrong"
-                row[2] += word == "refused"
-                row[3] = max(row[3], share if math.isfinite(share) else 0.0)
-                row[4] = max(row[4], steps)
-                if word != "right" or steps > STEPS:
-                    faults.append((
-                        f"{word}: {scene['class']}",
-                        f"tol {tol:g}, index {index}, {share:.3g}×: {why}", scene,
-                    ))  # fmt: skip
-    table(
-        ["tol", "scenes", "wrong", "refused", "largest error / allowed", "most steps"],
-        [[f"{tol:g}", *row[:3], f"{row[3]:.3g}", row[4]] for tol, row in rows.items()],
-        faults, args.show,
-    )  # fmt: skip
-    print(
-        f"\nthe judge's two tolerances differ by {doubt:.1g} at most; largest amplification "
-        f"{grown:.3g}; {time.perf_counter() - clock:.0f} s"
-    )
-
-
-if __name__ == "__main__":
-    main()

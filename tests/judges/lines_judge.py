@@ -1,21 +1,16 @@
-"""Do scenes find every wall, edge and border?  Cubic paths, exactly.
-
-python tests/judges/lines_judge.py --count 2000 --seed 1 --tol 1e-3 --tol 1e-9
-"""
+"""Do scenes find every wall, edge and border?  Cubic paths, exactly."""
 
 from __future__ import annotations
 
 import math
-import tempfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from cubic_paths import BORDER, BOUNCES, EDGE, MANY, SETTLES, follow
-from report import arguments, engine, lines, table
+from report import engine, lines
 
 WORDS = {"impact": BOUNCES, "contact": BOUNCES, "entry": BORDER, "exit": BORDER, "edge": EDGE}
-TOLS = [10.0**-k for k in range(3, 11)]
 
 
 def draw(seed: int, index: int) -> dict[str, Any]:
@@ -195,25 +190,3 @@ def verdict(scene: dict[str, Any], tol: float, folder: Path) -> tuple[str, str, 
     if complete and len(found) > sure:
         return "invented", f"{found[sure]} after the last", sure
     return "right", "", sure
-
-
-def main() -> None:
-    args = arguments(__doc__, TOLS)
-    rows, faults = [], []
-    for tol in args.tol:
-        counts = dict.fromkeys(("right", "missed", "invented", "late", "refused"), 0)
-        sure = 0
-        with tempfile.TemporaryDirectory() as folder:
-            for index in range(args.count):
-                scene = prepared(args.seed, index)
-                word, why, events = verdict(scene, tol, Path(folder))
-                counts[word] += 1
-                sure += events
-                if word != "right":
-                    faults.append((word, f"tol {tol:g}, index {index}: {why}", scene))
-        rows.append([f"{tol:g}", sure, *counts.values()])
-    table(["tol", "sure events", *counts], rows, faults, args.show)
-
-
-if __name__ == "__main__":
-    main()

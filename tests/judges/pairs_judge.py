@@ -5,21 +5,14 @@ Strips, which a base feels under each of its parts, have a judge of their own (a
 The verdict is error <= tol * max(1, amplification): how much the judge's end moves when the launch
 and the forces change by 1e-7 of themselves, over that.  Units: the fastest slip and the sharpest
 acceleration along the way.
-
-python tests/judges/pairs_judge.py --count 300 --seed 1 --tol 1e-4 --tol 1e-6 --tol 1e-9
 """
 
 from __future__ import annotations
 
 import math
-import tempfile
-import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from report import arguments, table
-from verdicts import judged, known
 
 INGREDIENTS = (
     "slope", "belt", "turntable", "drag", "force", "force over time", "smooth wall",
@@ -148,45 +141,3 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     scene["launch"] = launch
     scene |= {"time": float(duration), "frames": 1}
     return scene
-
-
-def main() -> None:
-    args = arguments(__doc__, [1e-4, 1e-6, 1e-9])
-    rows = {tol: [0, 0, 0, 0, 0.0] for tol in args.tol}
-    faults, gave_up, wild, clock = [], 0, 0, time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        for index in range(args.count):
-            scene = draw(args.seed, index)
-            best = known(scene, limit=3_000_000)
-            if best is None:
-                gave_up += 1
-                continue
-            if not best["stable"] or best["amplification"] > 1e5:
-                wild += 1  # other lines are met after a change of 1e-7
-                continue
-            for tol in args.tol:
-                word, share, why = judged(scene, best, tol, Path(folder))
-                row = rows[tol]
-                row[0] += 1
-                row[1] += word == "wrong"
-                row[2] += word == "end"
-                row[3] += word == "refused"
-                row[4] = max(row[4], share if math.isfinite(share) else 0.0)
-                if word != "right":
-                    faults.append((
-                        f"{word}: {scene['class']}",
-                        f"tol {tol:g}, index {index}, {share:.3g}× (amplification "
-                        f"{best['amplification']:.3g}, doubt {best['doubt']:.1g}): {why}", scene,
-                    ))  # fmt: skip
-    table(
-        ["tol", "scenes", "wrong", "other end", "refused", "largest error / allowed"],
-        [[f"{tol:g}", *row[:4], f"{row[4]:.3g}"] for tol, row in rows.items()], faults, args.show,
-    )  # fmt: skip
-    print(
-        f"\nthe judge gave up on {gave_up} of {args.count}, left out {wild} that amplify without "
-        f"bound; {time.perf_counter() - clock:.0f} s"
-    )
-
-
-if __name__ == "__main__":
-    main()

@@ -1,53 +1,152 @@
-"""Several pucks by scipy: the judge of :mod:`puck_tables.world`, which shares no code with it.
+"""Several pucks by scipy, on floors that move or change, too, pulled and led.
+
+The judge of :mod:`puck_tables.world`, which shares no code with it.
 
 All that moves is integrated together in time (DOP853), friction by the elliptic integrals of
-``reference.py``, contacts by scipy's event location.  Impacts are solved as small linear systems in
-the velocities of both discs, not by the formulas of the engine.
+``reference.py`` at velocities over the floor.  A constraint is a function g(t, q, V) = 0, linear in
+V; accelerations and multipliers come from one linear system, its rates of change from a complex
+step.  Impacts are one linear system, too.  Heat of the floor and work of the supports are
+integrated beside the states.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from astride_judge import FloorMap
+from astride_judge import friction as astride
 from reference import friction
 from scipy.integrate import solve_ivp
 
 G = 9.80665
-_STOP = 3e-8  # m/s: slower, a puck is at rest
+_STOP = 3e-8  # m/s: slower, a puck rests on its floor
+
+
+@dataclass
+class Floor:
+    """A belt or turntable, strips (direction, borders, frictions), a pull per mass (ax, ay).
+
+    ``spots``: round patches (x, y, radius, friction).  A base on several frictions feels each under
+    its own part, by ``astride_judge.py``.
+    """
+
+    vx: float = 0.0
+    vy: float = 0.0
+    turning: float = 0.0
+    centre: tuple[float, float] = (0.0, 0.0)
+    strips: tuple[float, list[float], list[float]] | None = None
+    pull: tuple[float, float] = (0.0, 0.0)
+    spots: tuple[tuple[float, float, float, float], ...] = ()
+
+    def velocity(self, q: np.ndarray) -> np.ndarray:
+        dx, dy = q[0] - self.centre[0], q[1] - self.centre[1]
+        return np.array([self.vx - self.turning * dy, self.vy + self.turning * dx, self.turning])
+
+    def along(self, q: np.ndarray) -> float:
+        return math.cos(self.strips[0]) * q[0] + math.sin(self.strips[0]) * q[1]
+
+    def shores(self, q: np.ndarray, radius: float) -> list[float]:
+        """How far the rim is from where it comes over something, or leaves it; of both signs."""
+        found = []
+        if self.strips is not None:
+            place = self.along(q)
+            found += [place - b + s * radius for b in self.strips[1] for s in (-1.0, 1.0)]
+        for x, y, reach, _ in self.spots:
+            away = math.hypot(q[0] - x, q[1] - y)
+            found += [away - reach + s * radius for s in (-1.0, 1.0)]
+        return found
+
+    def under(self, q: np.ndarray, radius: float, f: float) -> float | FloorMap:
+        """The one friction under a base, or all that there are around it."""
+        if self.strips is None and not self.spots:
+            return f
+        turn, borders, values = self.strips or (0.0, [], [f])
+        c, s = math.cos(turn), math.sin(turn)
+        place = np.array([c * q[0] + s * q[1], c * q[1] - s * q[0]])
+        spots = []
+        for x, y, reach, spot in self.spots:
+            away = math.hypot(q[0] - x, q[1] - y)
+            if away <= reach - radius:
+                return spot
+            if away < reach + radius:
+                middle = np.array([c * x + s * y, c * y - s * x]) - place
+                spots.append((*(middle / radius).tolist(), reach / radius, spot))
+        first = int(np.searchsorted(borders, place[0] - radius, "right"))
+        last = int(np.searchsorted(borders, place[0] + radius, "left"))
+        if first == last and not spots:
+            return values[first]
+        return FloorMap([(b - place[0]) / radius for b in borders], list(values), spots)
+
+    def rub(self, d: Disc, q: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Force and torque of the floor at a slip u of a disc."""
+        found = self.under(q, d.radius, d.f)
+        speed, rim = math.hypot(u[0], u[1]), d.radius * u[2]
+        if isinstance(found, FloorMap):
+            turn = 0.0 if self.strips is None else self.strips[0]
+            c, s = math.cos(turn), math.sin(turn)
+            along, across, torque = astride(
+                found, c * u[0] + s * u[1], c * u[1] - s * u[0], rim, 2.0 * d.height / d.radius
+            )
+            whole = -(c * along - s * across), -(s * along + c * across), -d.radius * torque
+            return np.array(whole) * d.mass * G
+        if found == 0.0:
+            return np.zeros(3)
+        if abs(rim) <= 1e-13 * speed:
+            x, y, turning = -u[0] / speed, -u[1] / speed, 0.0
+        elif speed <= 1e-13 * abs(rim):
+            x, y, turning = 0.0, 0.0, -4.0 / 3.0 * math.copysign(1.0, rim)
+        else:
+            x, y, turning = friction(u[0], u[1], rim, 2.0 * found * d.height / d.radius)
+        return found * d.mass * G * np.array([x, y, 0.5 * d.radius * turning])
+
+
+Led = Callable[[float, np.ndarray, np.ndarray], np.ndarray]
+
+
+def rail(angle: float, vx: float = 0.0, vy: float = 0.0) -> Led:
+    n = np.array([-math.sin(angle), math.cos(angle)])
+    return lambda t, q, v: np.array([n @ (v[:2] - np.array([vx, vy]))])
+
+
+def pivot(angle: float, reach: float, vx: float = 0.0, vy: float = 0.0) -> Led:
+    def led(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        c, s = np.cos(q[2] + angle), np.sin(q[2] + angle)
+        return np.array([v[0] - reach * s * v[2] - vx, v[1] + reach * c * v[2] - vy])
+
+    return led
+
+
+def blade(floor: Floor, angle: float, side: float = 0.0) -> Led:
+    def led(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+        c, s = np.cos(q[2] + angle), np.sin(q[2] + angle)
+        u = v - floor.velocity(q)
+        return np.array([c * u[1] - s * u[0] - side])
+
+    return led
 
 
 @dataclass
 class Disc:
-    """A puck: SI units; e, beta, mu of its rim."""
+    """A puck: SI units; e, beta, mu of its rim; force: t → Fx, Fy, torque."""
 
     radius: float
     mass: float
     f: float
     height: float
-    e: float
-    beta: float
-    mu: float
-    state: np.ndarray  # x, y, angle, vx, vy, spin
+    state: np.ndarray
+    e: float = 1.0
+    beta: float = -1.0
+    mu: float = math.inf
+    force: Callable[[float], np.ndarray] | None = None
+    led: Led | None = None
 
     @property
-    def inertia(self) -> float:
-        return 0.5 * self.mass * self.radius**2
-
-    def rates(self, s: np.ndarray) -> np.ndarray:
-        vx, vy, rim, decel = s[3], s[4], self.radius * s[5], self.f * G
-        speed = math.hypot(vx, vy)
-        if math.hypot(speed, rim) < 0.01 * _STOP:
-            return np.zeros(6)
-        if abs(rim) <= 1e-13 * speed:
-            ax, ay, turn = -vx / speed, -vy / speed, 0.0
-        elif speed <= 1e-13 * abs(rim):
-            ax, ay, turn = 0.0, 0.0, -4.0 / 3.0 * math.copysign(1.0, rim)
-        else:
-            ax, ay, turn = friction(vx, vy, rim, 2.0 * self.f * self.height / self.radius)
-        return np.array([vx, vy, s[5], decel * ax, decel * ay, decel * turn / self.radius])
+    def masses(self) -> np.ndarray:
+        return self.mass * np.array([1.0, 1.0, 0.5 * self.radius**2])
 
 
 @dataclass
@@ -56,9 +155,9 @@ class Line:
 
     normal: tuple[float, float]
     place: float
-    e: float
-    beta: float
-    mu: float
+    e: float = 1.0
+    beta: float = -1.0
+    mu: float = math.inf
 
 
 @dataclass
@@ -80,20 +179,51 @@ class Straight:
 
 @dataclass
 class Told:
-    """Times and partners of impacts, and the last states."""
+    """Times and partners of impacts, the last states, heat of the floor, work of the supports."""
 
     impacts: list[tuple[float, int, int]] = field(default_factory=list)
     states: np.ndarray | None = None
+    heat: float = 0.0
+    support: float = 0.0
+
+
+def jacobian(led: Led, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
+    zero = led(t, q, np.zeros(3))
+    return np.stack([led(t, q, one) - zero for one in np.eye(3)], axis=1)
+
+
+def rates(floor: Floor, d: Disc, t: float, s: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Accelerations, power of the floor's heat, and of supports."""
+    q, v = s[:3], s[3:]
+    ground = floor.velocity(q)
+    u = v - ground
+    slips = math.hypot(u[0], u[1], d.radius * u[2]) > 0.01 * _STOP
+    rub = floor.rub(d, q, u) if slips else np.zeros(3)
+    given = np.array([d.mass * floor.pull[0], d.mass * floor.pull[1], 0.0])
+    if d.force is not None:
+        given = given + d.force(t)
+    total, support = rub + given, float(rub @ ground)
+    if d.led is None:
+        return total / d.masses, -float(rub @ u), support
+    a = jacobian(d.led, t, q, v)
+    h = 1e-30
+    drift = d.led(t, q + 1j * h * v, v.astype(complex)).imag / h
+    k = len(a)
+    matrix = np.block([[np.diag(d.masses), -a.T], [a, np.zeros((k, k))]])
+    found = np.linalg.solve(matrix, np.concatenate([total, -drift]))
+    return found[:3], -float(rub @ u), support + float(found[3:] @ (a @ v))
 
 
 def play(
-    discs: list[Disc], lines: list[Line | Straight], until: float, most: int = 10**6
+    floor: Floor, discs: list[Disc], lines: list[Line | Straight], until: float, most: int = 10**6
 ) -> Told:  # fmt: skip
     """Follow them until a time, or so many impacts."""
     told, t = Told(), 0.0
     y = np.array([d.state for d in discs], float)
-    pairs = [(i, j) for i in range(len(discs)) for j in range(i + 1, len(discs))]
-    meetings = pairs + [(i, -1 - k) for i in range(len(discs)) for k in range(len(lines))]
+    count = len(discs)
+    meetings = [(i, j) for i in range(count) for j in range(i + 1, count)]
+    meetings += [(i, -1 - k) for i in range(count) for k in range(len(lines))]
+    rests = [False] * count
 
     def gap(i: int, j: int, z: np.ndarray) -> Any:
         if j >= 0:
@@ -103,113 +233,126 @@ def play(
             return np.hypot(*(z[i, :2] - line.nearest(z[i, :2]))) - discs[i].radius
         return np.dot(line.normal, z[i, :2]) - line.place - discs[i].radius
 
-    def moves(i: int) -> bool:
-        return math.hypot(y[i, 3], y[i, 4], discs[i].radius * y[i, 5]) > _STOP
-
     while t < until and len(told.impacts) < most:
-        going = [i for i in range(len(discs)) if moves(i)]
-        for i in range(len(discs)):
-            if i not in going:
-                y[i, 3:] = 0.0
-        if not going:
-            break
-        base = y.copy()
 
-        def whole(flat: np.ndarray, going=going, base=base) -> np.ndarray:
-            z = base.copy()
-            z[going] = flat.reshape(-1, 6)
-            return z
-
-        def rates(_: float, flat: np.ndarray, going=going) -> np.ndarray:
-            rows = flat.reshape(-1, 6)
-            return np.concatenate([discs[i].rates(row) for i, row in zip(going, rows, strict=True)])
+        def whole(time: float, flat: np.ndarray) -> np.ndarray:
+            out = np.zeros_like(flat)
+            for i, d in enumerate(discs):
+                row = flat[6 * i : 6 * i + 6]
+                out[6 * i : 6 * i + 3] = row[3:]
+                if rests[i]:
+                    ground = floor.velocity(row)
+                    turned = floor.turning * np.array([-ground[1], ground[0]])
+                    out[6 * i + 3 : 6 * i + 5] = turned
+                    holds = d.mass * (turned - floor.pull[:2])  # against what pulls, while it moves
+                    if d.force is not None:
+                        holds = holds - d.force(time)[:2]
+                    out[-1] += float(holds @ ground[:2])
+                    continue
+                a, heat, support = rates(floor, d, time, row)
+                out[6 * i + 3 : 6 * i + 6] = a
+                out[-2] += heat
+                out[-1] += support
+            return out
 
         events, kinds = [], []
+
+        def watch(kind: tuple, value: Callable, direction: float = -1.0) -> None:
+            def event(_: float, flat: np.ndarray) -> float:
+                return value(flat[:-2].reshape(-1, 6))
+
+            event.terminal, event.direction = True, direction  # type: ignore[attr-defined]
+            events.append(event)  # noqa: B023
+            kinds.append(kind)  # noqa: B023
+
         for i, j in meetings:
-            if i in going or j in going:
+            watch(("hit", i, j), lambda z, i=i, j=j: gap(i, j, z))
+        for i, d in enumerate(discs):
+            if not rests[i]:
 
-                def meets(_: float, flat: np.ndarray, i=i, j=j, whole=whole) -> float:
-                    return gap(i, j, whole(flat))
+                def slip(z: np.ndarray, i: int = i, r: float = d.radius) -> float:
+                    u = z[i, 3:] - floor.velocity(z[i])
+                    return math.hypot(u[0], u[1], r * u[2]) - _STOP
 
-                meets.terminal, meets.direction = True, -1.0  # type: ignore[attr-defined]
-                events.append(meets)
-                kinds.append((i, j))
-        meeting = list(kinds)
-        for n, i in enumerate(going):
-
-            def slow(_: float, flat: np.ndarray, n=n, i=i) -> float:
-                row = flat[6 * n : 6 * n + 6]
-                return math.hypot(row[3], row[4], discs[i].radius * row[5]) - _STOP
-
-            slow.terminal, slow.direction = True, -1.0  # type: ignore[attr-defined]
-            events.append(slow)
-            kinds.append((i, None))
-        # finer, rounding of the elliptic integrals where a spin is slow asks for steps of 1e-9 s
+                watch(("rest", i), slip)
+            for k, away in enumerate(floor.shores(y[i], d.radius)):
+                if abs(away) > 1e-10:  # else it has just come over it
+                    watch(
+                        ("cross", i),
+                        lambda z, i=i, k=k, r=d.radius: floor.shores(z[i], r)[k], 0.0,
+                    )  # fmt: skip
+        start = np.concatenate([y.ravel(), [told.heat, told.support]])
         for longest in (0.02, 0.0005):
             found = solve_ivp(
-                rates, (t, until), y[going].ravel(), "DOP853", rtol=1e-11, atol=1e-13,
-                max_step=longest, events=events, dense_output=True,
+                whole, (t, until), start, "DOP853", rtol=1e-11, atol=1e-13, max_step=longest,
+                events=events, dense_output=True,
             )  # fmt: skip
             assert found.success
-            between = found.sol(np.arange(t, found.t[-1], 2e-4)).T
-            states = np.moveaxis(np.stack([whole(z) for z in between]), 0, -1)
-            if not any((gap(*kind, states) < -1e-7).any() for kind in meeting):
+            between = found.sol(np.arange(t, found.t[-1], 2e-4))[:-2].reshape(count, 6, -1)
+            if not any((gap(*meeting, between) < -1e-7).any() for meeting in meetings):
                 break  # else two have met, and were apart again, within a step
-        t = float(found.t[-1])
-        y = whole(found.y[:, -1])
+        t, told.heat, told.support = float(found.t[-1]), *found.y[-2:, -1].tolist()
+        y = found.y[:-2, -1].reshape(-1, 6).copy()
         for kind, hits in zip(kinds, found.t_events, strict=True):
-            if len(hits) and kind[1] is None:
-                y[kind[0], 3:] = 0.0
-            elif len(hits):
-                collide(discs, lines, kind[0], kind[1], y)
-                told.impacts.append((t, *kind))
+            if not len(hits):
+                continue
+            if kind[0] == "rest":
+                rests[kind[1]] = True
+                y[kind[1], 3:] = floor.velocity(y[kind[1]])
+            elif kind[0] == "hit":
+                collide(discs, lines, t, *kind[1:], y)
+                told.impacts.append((t, *kind[1:]))
+                for disc in kind[1:]:
+                    if disc >= 0:
+                        rests[disc] = False
     told.states = y
     return told
 
 
 def collide(
-    discs: list[Disc], lines: list[Line | Straight], i: int, j: int, y: np.ndarray
+    discs: list[Disc], lines: list[Line | Straight], t: float, i: int, j: int, y: np.ndarray
 ) -> None:  # fmt: skip
-    """The impact of two, as linear equations in their six velocities and two impulses."""
-    d = discs[i]
+    """The impact of two: impulses and those of constraints in one linear system."""
+    who = [i, j] if j >= 0 else [i]
     if j >= 0:
-        other = discs[j]
         n = (y[j, :2] - y[i, :2]) / math.dist(y[i, :2], y[j, :2])
-        e, beta, mu = min(d.e, other.e), min(d.beta, other.beta), min(d.mu, other.mu)
-        masses = [d.mass, d.mass, d.inertia, other.mass, other.mass, other.inertia]
-        reach = other.radius
+        rims = discs[i], discs[j]
     else:
         line = lines[-1 - j]
+        rims = (line,)
         if isinstance(line, Straight):
-            n = (line.nearest(y[i, :2]) - y[i, :2]) / d.radius
+            n = (line.nearest(y[i, :2]) - y[i, :2]) / discs[i].radius
         else:
             n = -np.array(line.normal)
-        e, beta, mu = line.e, line.beta, line.mu
-        masses, reach = [d.mass, d.mass, d.inertia], 0.0
+    e, beta, mu = (min(getattr(rim, name) for rim in rims) for name in ("e", "beta", "mu"))
     s = np.array([-n[1], n[0]])
-    normal = np.array([*n, 0.0, *(-n), 0.0])[: len(masses)]
-    along = np.array([*s, d.radius, *(-s), reach])[: len(masses)]
-    v = np.concatenate([y[i, 3:], y[j, 3:] if j >= 0 else []])
-    inverse = 1.0 / np.array(masses)
-    un, ut = normal @ v, along @ v
-    # v⁺ + M⁻¹ (n P_n + t P_t) = v, n v⁺ = −e u_n, and t v⁺ = −β u_t or P_t = ± μ P_n
-    size = len(masses)
-    for way in (0.0, 1.0, -1.0):
-        matrix, right = np.zeros((size + 2, size + 2)), np.zeros(size + 2)
-        matrix[:size, :size] = np.eye(size)
-        matrix[:size, size], matrix[:size, size + 1] = inverse * normal, inverse * along
-        right[:size] = v
-        matrix[size, :size], right[size] = normal, -e * un
-        if way == 0.0:
-            matrix[size + 1, :size], right[size + 1] = along, -beta * ut
-        else:
-            matrix[size + 1, size], matrix[size + 1, size + 1] = -way * mu, 1.0
-        solution = np.linalg.solve(matrix, right)
-        push, rub = solution[size:]
-        if way == 0.0 and abs(rub) <= mu * push:
-            break
-        if way != 0.0 and rub * ut >= 0.0:
-            break
-    y[i, 3:] = solution[:3]
-    if j >= 0:
-        y[j, 3:] = solution[3:6]
+    normal, along, blocks = [], [], []
+    for sign, k in zip((1.0, -1.0), who, strict=False):
+        normal += [*(sign * n), 0.0]
+        along += [*(sign * s), discs[k].radius]
+        led = discs[k].led
+        blocks.append(np.zeros((0, 3)) if led is None else jacobian(led, t, y[k, :3], y[k, 3:]))
+    rows = sum(map(len, blocks))
+    a = np.zeros((rows, 3 * len(who)))
+    first = 0
+    for number, block in enumerate(blocks):
+        a[first : first + len(block), 3 * number : 3 * number + 3] = block
+        first += len(block)
+    masses = np.concatenate([discs[k].masses for k in who])
+    v = np.concatenate([y[k, 3:] for k in who])
+    ut, size = float(np.dot(along, v)), len(v)
+    # after Poisson: the impulses that stop approach and slip, enlarged by 1 + e and 1 + beta
+    matrix = np.block([[np.diag(masses), -a.T], [a, np.zeros((rows, rows))]])
+    jets = np.zeros((size + rows, 2))
+    jets[:size, 0], jets[:size, 1] = normal, along
+    change = np.linalg.lstsq(matrix, jets, rcond=None)[0][:size]
+    w = np.array([normal, along]) @ change
+    stops = np.linalg.solve(w, np.array([normal, along]) @ v)
+    bound = mu * (1.0 + e) / (1.0 + beta) if beta > -1.0 else 0.0
+    if abs(stops[1]) > bound * stops[0]:
+        way = math.copysign(bound, ut)
+        push = float(np.dot(normal, v)) / (w[0, 0] + way * w[0, 1])
+        stops = np.array([push, way * push])
+    v = v - change @ (stops * np.array([1.0 + e, 1.0 + beta]))
+    for number, k in enumerate(who):
+        y[k, 3:] = v[3 * number : 3 * number + 3]

@@ -2,21 +2,14 @@
 
 The judge follows every rebound down to 1e-11 of the speed, in places measured from the wall; what
 is left is one impact and a lean, with Coulomb's friction at the rim: what many small impacts give.
-
-python tests/judges/rebound_judge.py --count 60 --seed 1 --tol 1e-9
 """
 
 from __future__ import annotations
 
 import math
-import tempfile
-import time
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from report import arguments, table
-from verdicts import judged, known
 
 KINDS = ("slope", "force", "belt", "turntable")
 STEEP = [0.0017, 0.02, 0.1]  # most of the speed is lost at once
@@ -89,38 +82,3 @@ def draw(seed: int, index: int) -> dict[str, Any]:
     settle = 2.0 * hit / rate / (1.0 - restitution)
     scene |= {"time": float(1.3 * (hit / rate + min(settle, 60.0))), "frames": 1}
     return scene
-
-
-def main() -> None:
-    args = arguments(__doc__, [1e-6, 1e-9])
-    rows: dict[tuple[str, float], list[float]] = {}
-    faults, gave_up, clock = [], 0, time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        for index in range(args.count):
-            scene = draw(args.seed, index)
-            best = known(scene)
-            if best is None or not best["stable"]:
-                gave_up += 1
-                continue
-            for tol in args.tol:
-                word, share, why = judged(scene, best, tol, Path(folder))
-                row = rows.setdefault((scene["class"], tol), [0, 0, 0, 0.0])
-                row[0] += 1
-                row[1] += word in ("wrong", "end")
-                row[2] += word == "refused"
-                row[3] = max(row[3], share if math.isfinite(share) else 0.0)
-                if word != "right":
-                    faults.append((
-                        f"{word}: {scene['class']}",
-                        f"tol {tol:g}, index {index}, {share:.3g}× (amplification "
-                        f"{best['amplification']:.3g}): {why}", scene,
-                    ))  # fmt: skip
-    table(
-        ["class", "tol", "scenes", "wrong", "refused", "largest error / allowed"],
-        [[*key, *row[:3], f"{row[3]:.3g}"] for key, row in sorted(rows.items())], faults, args.show,
-    )  # fmt: skip
-    print(f"\nthe judge gave up on {gave_up} of {args.count}; {time.perf_counter() - clock:.0f} s")
-
-
-if __name__ == "__main__":
-    main()

@@ -1,26 +1,12 @@
-"""What the judges share: scenes as dicts, the engine of this checkout, tables of verdicts."""
+"""What the judges share: scenes as dicts, the engine of this checkout."""
 
 from __future__ import annotations
 
-import argparse
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-
-def arguments(words: str, tols: list[float]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        description=words, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--count", type=int, default=200, help="scenes")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--tol", type=float, action="append", help="may be given more than once")
-    parser.add_argument("--show", type=int, default=5, help="offending scenes to print, per class")
-    args = parser.parse_args()
-    args.tol = args.tol or tols
-    return args
 
 
 def written(scene: dict[str, Any], folder: Path, **run: Any) -> dict[str, Any]:
@@ -73,18 +59,3 @@ def lines(scene: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         np.array(walls).reshape(-1, 6), np.array(edges).reshape(-1, 3),
         np.array(borders).reshape(-1, 3),
     )  # fmt: skip
-
-
-def table(
-    head: list[str], rows: list[list[Any]], faults: list[tuple[str, str, dict[str, Any]]], show: int
-) -> None:
-    """Print a table, then the offending scenes by class."""
-    print("| " + " | ".join(head) + " |")
-    print("| " + " | ".join("---" for _ in head) + " |")
-    for row in rows:
-        print("| " + " | ".join(str(cell) for cell in row) + " |")
-    for kind in sorted({fault[0] for fault in faults}):
-        those = [fault for fault in faults if fault[0] == kind]
-        print(f"\n{kind}: {len(those)}")
-        for _, why, scene in those[:show]:
-            print(f"  {why}\n    {scene}")

@@ -4,25 +4,21 @@ A force and a torque of a share of what friction has in the slip n.  'stops': co
 from a small slip in another direction.  'starts': constant, share > 1, from rest: uniformly
 accelerated along the slip that keeps its direction, in closed form.  'peak': straight up to share
 > 1 and down again: slips when the share is 1, rests later (in closed form next to 1).  Elsewhere
-two ways of the judge's own (Radau in Cartesian velocities; BDF in direction and ln Q) must agree.
+by Radau in Cartesian velocities.
 
 The allowed error is tol of the motion's own time and length over |share − 1|, by which a change of
 the force is amplified.
-
-python tests/judges/threshold_judge.py --count 200 --seed 1 --tol 1e-6 --tol 1e-9
 """
 
 from __future__ import annotations
 
 import math
-import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from contact_truth import tabled, tabled_friction
-from report import arguments, engine, table
+from report import engine
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
 
@@ -165,50 +161,7 @@ def cartesian(
     return math.inf, size * y[:3]
 
 
-def by_direction(
-    scene: dict[str, Any], slider: Slider, t: float, z: np.ndarray, u: np.ndarray, size: float,
-    until: float,
-) -> tuple[float, np.ndarray]:  # fmt: skip
-    """The same in (x, n, ln Q, t) over dτ = dt/Q, by BDF."""
-    top = _top(scene)
-
-    def rates(_: float, y: np.ndarray) -> np.ndarray:
-        q = math.exp(y[6])
-        n = y[3:6] / np.linalg.norm(y[3:6])
-        a = slider.over * (_pull(scene, y[7]) + slider.friction(n)) / size
-        gain = float(a @ n)
-        # n′ keeps its size 1; all over dt/Q
-        return np.array([*(q * q * n), *(a - gain * n), gain, q])
-
-    def ends(_: float, y: np.ndarray) -> float:
-        return float(y[6] - math.log(1e-9))
-
-    def kink(_: float, y: np.ndarray) -> float:
-        return float(y[7] - top)
-
-    ends.terminal, ends.direction = True, -1.0  # type: ignore[attr-defined]
-    kink.terminal = True  # type: ignore[attr-defined]
-    q = float(np.linalg.norm(u))
-    y = np.array([*(z / size), *(u / q), math.log(q / size), t])
-    pieces = [kink, None] if scene["class"] == "peak" else [None]
-    for extra in pieces:
-        with np.errstate(over="ignore"):  # as above
-            run = solve_ivp(
-                rates, (0.0, 1e30), y, "BDF", events=[ends, *([extra] if extra else [])],
-                rtol=closeness(scene), atol=1e-2 * closeness(scene),
-            )  # fmt: skip
-        y = run.y[:, -1]
-        if run.status != 1:
-            raise ValueError(run.message)
-        if len(run.t_events[0]):
-            q = math.exp(y[6])
-            toward = -rates(0.0, y)[6] / 1.0
-            wait = q / toward
-            return float(y[7] + wait), size * (y[:3] + 0.5 * wait * q * y[3:6])
-    raise ValueError("no end")
-
-
-def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
+def truth(scene: dict[str, Any]) -> dict[str, Any]:
     """``rests``, ``slips`` (s, or None), ``way`` (x, y, θ), the motion's time and length."""
     slider, limit = Slider(scene), scene["limit"]
     share, span, n = limit["share"], limit["span"], np.array(limit["n"])
@@ -220,12 +173,11 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
             "stick": None, "slip": 0.0, "way": way * turn, "time": span,
             "length": 0.5 * gain * span**2,
         }  # fmt: skip
-    method = by_direction if second else cartesian
     if kind == "stops":
         launch = scene["launch"]
         u = np.array([*launch["velocity"], launch["spin"] * scene["puck"]["radius"]])
         size = float(np.linalg.norm(u))
-        rests, way = method(scene, slider, 0.0, np.zeros(3), u, size, scene["time"])
+        rests, way = cartesian(scene, slider, 0.0, np.zeros(3), u, size, scene["time"])
         return {
             "stick": rests, "slip": None, "way": way * turn, "time": rests,
             "length": size * rests,
@@ -251,7 +203,7 @@ def truth(scene: dict[str, Any], second: bool = False) -> dict[str, Any]:
     n, _ = slider.steady(_pull(scene, wait), n)
     size = (share - 1.0) ** 2 * slider.load / slider.m * span
     u, z = speed * n, speed * wait / 3.0 * n
-    lasts, way = method(scene, slider, wait, z, u, size, 2.0 * span)
+    lasts, way = cartesian(scene, slider, wait, z, u, size, 2.0 * span)
     return {
         "stick": span / share + lasts, "slip": span / share, "way": way * turn, "time": lasts,
         "length": size * lasts,
@@ -281,54 +233,3 @@ def judged(
     worst = max(shares, key=lambda name: shares[name])
     why = f"{worst}: {shares[worst]:.3g} of what is allowed; {run.end}, {run.steps} steps"
     return ("right" if shares[worst] <= 1.0 else "wrong"), shares[worst], why, run.steps
-
-
-def main() -> None:
-    args = arguments(__doc__, [1e-4, 1e-6, 1e-9])
-    rows: dict[tuple[str, float], list[float]] = {}
-    faults, doubt, undecided, clock = [], 0.0, 0, time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        for index in range(args.count):
-            scene = draw(args.seed, index)
-            try:
-                best = truth(scene)
-                other = truth(scene, second=True)
-            except ValueError as error:
-                print(f"the judge does not know scene {index}: {error}")
-                undecided += 1
-                continue
-            apart = (best["way"] - other["way"]) * [1.0, 1.0, scene["puck"]["radius"]]
-            gap = float(np.max(np.abs(apart)))
-            gap *= abs(scene["limit"]["share"] - 1.0) / best["length"]
-            if gap > 1e-9:
-                print(f"the judge disagrees with itself by {gap:.2g} on scene {index}")
-                undecided += 1
-                continue
-            doubt = max(doubt, gap)
-            for tol in args.tol:
-                word, share, why, steps = judged(scene, best, tol, Path(folder))
-                row = rows.setdefault((scene["class"], tol), [0, 0, 0, 0.0, 0])
-                row[0] += 1
-                row[1] += word == "wrong"
-                row[2] += word == "refused"
-                row[3] = max(row[3], share if math.isfinite(share) else 0.0)
-                row[4] = max(row[4], steps)
-                if word != "right":
-                    faults.append((
-                        f"{word}: {scene['class']}",
-                        f"tol {tol:g}, index {index}, share {scene['limit']['share']}: {why}",
-                        scene,
-                    ))  # fmt: skip
-    table(
-        ["class", "tol", "scenes", "wrong", "refused", "largest error / allowed", "most steps"],
-        [[*key, *row[:3], f"{row[3]:.3g}", row[4]] for key, row in sorted(rows.items())],
-        faults, args.show,
-    )  # fmt: skip
-    print(
-        f"\nthe judge's two ways differ by {doubt:.1g} of what tol 1 allows; undecided "
-        f"{undecided} of {args.count}; {time.perf_counter() - clock:.0f} s"
-    )
-
-
-if __name__ == "__main__":
-    main()
