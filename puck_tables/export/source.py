@@ -21,8 +21,8 @@ from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
 from puck_tables.export.program import (
     base_step,
-    look_ups,
     launch_motion,
+    look_ups,
     resultant_formulas,
     self_check,
 )
