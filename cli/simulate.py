@@ -118,7 +118,7 @@ def _from_fit(
             raise InputError(
                 f"--fit and --{name} clash: the file of the fit has the puck and its launch"
             )
-    from puck_tables.fitting.fit_files import puck_and_launch
+    from puck_tables.fitting.numbers import puck_and_launch
 
     return puck_and_launch(path, track)
 

@@ -11,8 +11,7 @@ from rarely import few, nightly
 
 import puck_tables as pt
 from puck_tables.fitting.forward_model import Moving, states_and_slopes, states_of
-from puck_tables.fitting.least_squares import compact
-from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR
+from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, compact
 from puck_tables.fitting.unit_motions import TallMotions, unit_motions_of
 from puck_tables.plot.fit_figure import draw
 

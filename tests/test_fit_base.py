@@ -143,7 +143,7 @@ def test_slopes_are_those_of_motions_nearby():
     track, puck, _ = film(np.random.default_rng([38, 2]), "box:0.2x0.1")
     best = pt.fit(track, pt.Puck(base=puck.base), free=("friction", "delta", "gyration")).estimate
     problem, x = best.problem, best.x
-    slopes, kept = problem.jacobian(x), np.ones(x.size)
+    slopes, kept = problem.residuals_and_jacobian(x)[1], np.ones(x.size)
     for k in range(x.size):
         step = 1e-4 * max(abs(x[k]), 0.1)
         moved = [problem.residuals(x + sign * step * np.eye(x.size)[k]) for sign in (1.0, -1.0)]
@@ -257,7 +257,7 @@ def test_a_mark_off_the_centre_is_named_and_found(round_: bool):
     for name, true in zip(("mark_x", "mark_y"), mark, strict=True):
         assert abs(found[name].value - true) < 4.0 * found[name].error < 0.01
     problem, x = found.estimate.problem, found.estimate.x
-    slopes = problem.jacobian(x)
+    slopes = problem.residuals_and_jacobian(x)[1]
     for k in range(x.size):
         step = 1e-4 * max(abs(x[k]), 0.1)
         moved = [problem.residuals(x + sign * step * np.eye(x.size)[k]) for sign in (1.0, -1.0)]

@@ -11,8 +11,8 @@ from drawn_films import KINDS, cut, drawn, summed, wrong
 from rarely import thorough
 
 import puck_tables as pt
-from puck_tables.fitting.identifiability import taken_for_granted
 from puck_tables.fitting.numbers import Number
+from puck_tables.fitting.remarks import taken_for_granted
 from puck_tables.fitting.residuals import SideForces
 
 # a drag, or a soft push, in few frames may look like friction

@@ -13,9 +13,9 @@ from disc_judge import slid
 from film_judge import G
 
 import puck_tables as pt
-from puck_tables.fitting.checked_spec import spec_of
+from puck_tables.fitting.checked_spec import spec_of, with_law
+from puck_tables.fitting.fit_spec import LAW_NUMBERS
 from puck_tables.fitting.forward_model import RADIUS, SPIN, VX, VY, states_and_slopes
-from puck_tables.fitting.parameters import LAW_NUMBERS
 from puck_tables.fitting.speed_motion import law_named
 
 R = 0.04
@@ -92,7 +92,7 @@ def test_motions_and_their_slopes_are_those_of_the_judge(how, v, spin):
         law = law_named("stribeck", fast, rest, speed).extended  # its rows, not its formula
         return slid(law, radius, (vx, vy), w, times, until=1e-5, **how)
 
-    spec = spec_of(pt.Puck(R, height=0.0), ["friction"], {}, {}, {}, {}).with_law("stribeck")
+    spec = with_law(spec_of(pt.Puck(R, height=0.0), ["friction"], {}, {}, {}, {}), "stribeck")
     push, belt = how.get("push", (0.0, 0.0)), how.get("belt", (0.0, 0.0))
     floor = dict(zip(("slope_x", "slope_y", "belt_x", "belt_y"),
                      (push[0] / G, push[1] / G, *belt), strict=True))  # fmt: skip

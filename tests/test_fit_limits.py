@@ -11,7 +11,7 @@ from film_judge import G
 from rarely import few
 
 import puck_tables as pt
-from puck_tables.fitting.fit_files import puck_and_launch
+from puck_tables.fitting.numbers import puck_and_launch
 
 NOISE = (0.3e-3, 5e-3)
 

@@ -16,8 +16,8 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.least_squares import FROM_NEARBY, multi_start, triangle
-from puck_tables.fitting.unknowns import NumbersOf
+from puck_tables.fitting.problem import FROM_NEARBY, multi_start, triangle
+from puck_tables.fitting.slides import NumbersOf
 
 Z95 = 1.959963984540054  # standard deviations to the ends of a 95 % interval of a normal
 BLIND = 2.0  # plausible ranges per standard deviation

@@ -2,27 +2,94 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
-from puck_tables._core.arrays import instance
+from puck_tables._core.arrays import bracketed, instance, pair_of, real
+from puck_tables._core.wording import meant
+from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
-from puck_tables.fitting.fit_spec import FitSpec, is_annulus
-from puck_tables.fitting.parameters import (
+from puck_tables.fitting.fit_spec import (
     ALL,
     INTEGRATED,
     LARGEST,
+    LAW_NUMBERS,
     NODES,
     OF_IMPACTS,
+    POSITIVE,
     PUCK,
     SMALLEST,
-    bounds_of,
-    in_range,
+    FitSpec,
+    Parameter,
+    is_annulus,
     parameters_of,
-    prior_of,
-    refuse_unknown,
 )
+from puck_tables.fitting.speed_motion import LAWS
 from puck_tables.puck import Puck
+
+
+def refuse_unknown(name: str, known: Mapping[str, Parameter], what: str) -> None:
+    """Refuse a name that is no parameter, with the nearest that is."""
+    if name not in known:
+        usable = [one for one in known if one not in NODES]
+        hint = meant(name, usable, 0.3)
+        raise InputError(f"{what} names '{name}', which is none of {', '.join(usable)}{hint}")
+
+
+def in_range(name: str, value: Any, known: Mapping[str, Parameter]) -> float:
+    """A value of a parameter."""
+    refuse_unknown(name, known, "the fit")
+    number, kind = real(name, value, known[name].unit), known[name]
+    if not kind.low <= number <= kind.high or (name in POSITIVE and number == 0.0):
+        raise InputError(
+            f"{name} must be {_range(name, kind)}{bracketed(kind.unit)}, got {number:g}"
+        )
+    return number
+
+
+def _range(name: str, kind: Parameter) -> str:
+    """What values a parameter may have, in words."""
+    if name in POSITIVE:
+        return f"greater than {kind.low:g}"
+    if kind.high == math.inf:
+        return f"{kind.low:g} or more"
+    return f"from {kind.low:g} to {kind.high:g}"
+
+
+def prior_of(name: str, pair: Any, known: Mapping[str, Parameter]) -> tuple[float, float]:
+    """A value and its standard deviation."""
+    value, spread = _pair(name, pair, "prior", "value and a standard deviation", known)
+    if not spread > 0.0:
+        raise InputError(
+            f"the prior of {name} needs a standard deviation > 0, got {spread:g}: to hold {name} "
+            "at a value, fix it"
+        )
+    return in_range(name, value, known), spread
+
+
+def bounds_of(name: str, pair: Any, known: Mapping[str, Parameter]) -> tuple[float, float]:
+    """The least and the largest value."""
+    low, high = _pair(name, pair, "bounds", "least and a largest value", known)
+    kind = known[name]
+    if not low < high:
+        raise InputError(f"the bounds of {name} must ascend, got {low:g} and {high:g}")
+    if high <= kind.low or low >= kind.high:
+        raise InputError(
+            f"the bounds of {name}, {low:g} to {high:g}, hold none of its values: {name} is "
+            f"{_range(name, kind)}{bracketed(kind.unit)}"
+        )
+    return low, high
+
+
+def _pair(
+    name: str, pair: Any, what: str, words: str, known: Mapping[str, Parameter]
+) -> tuple[float, float]:
+    first, second = pair_of(f"the {what} of {name} must be a {words}", pair)
+    unit = known[name].unit
+    return real(f"the {what} of {name}", first, unit), real(f"the {what} of {name}", second, unit)
+
 
 _CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 
@@ -134,3 +201,85 @@ def _refuse_for_base(named: Collection[str], impacts: bool) -> None:
     for name in ("radius", "drag", "inner", *INTEGRATED):
         if name in named:
             raise InputError(f"{name} is found, or held, of round pucks: leave it out with a base")
+
+
+def with_law(spec: FitSpec, law: str) -> FitSpec:
+    """What is asked with a law over slip speed by its name, whose numbers are found too."""
+    if law not in LAWS:
+        raise InputError(f"law must be one of {', '.join(LAWS)}, got {law!r:.40}")
+    if "friction" not in spec.free:
+        raise InputError("a law over slip speed is found: do not give the friction")
+    more = tuple(name for name in LAW_NUMBERS if name not in spec.named)
+    return replace(spec, law=law, free=(*spec.free, *more))
+
+
+def refuse_integrated(spec: FitSpec) -> None:
+    """Refuse what does not go with motions that are integrated."""
+    named = spec.integrated
+    _refuse_pressure(spec, f"{' and '.join(named)} are")
+    if not spec.law and any(name in LAW_NUMBERS for name in named):
+        raise InputError(
+            f"{' and '.join(LAW_NUMBERS)} are numbers of a law over slip speed: name it "
+            f"(--law, law=): {', '.join(LAWS)}"
+        )
+
+
+def _refuse_pressure(spec: FitSpec, what: str) -> None:
+    """Refuse pressure, or a base, under which no such motion is integrated."""
+    if spec.base is not None:
+        raise InputError(f"{what} found of round pucks alone, not of base {spec.base.name}")
+    if spec.puck.body.law.name != "uniform" or "inner" in spec.named:
+        raise InputError(
+            f"{what} found of uniform pressure alone, not of {spec.puck.body.law.name}"
+        )
+
+
+def over(spec: FitSpec, speeds: tuple[float, ...], between: str) -> FitSpec:
+    """What is asked with a friction coefficient for each of these slip speeds."""
+    for name in ("decel", "gravity", "drag", *INTEGRATED, "inner"):
+        if name in spec.named:
+            raise InputError(
+                f"{name} cannot be found or fixed beside a friction over slip speed: leave it out"
+            )
+    if "friction" not in spec.free:
+        raise InputError("a friction over slip speed is found: do not give the friction")
+    _refuse_pressure(spec, "a friction over slip speed is")
+    nodes = NODES[: len(speeds)]
+    free = (*nodes, *(name for name in spec.free if name != "friction"))
+    bounds, priors = (
+        {**of, **(dict.fromkeys(nodes, of["friction"]) if "friction" in of else {})}
+        for of in (spec.bounds, spec.priors)
+    )
+    return replace(spec, free=free, bounds=bounds, priors=priors, speeds=speeds, between=between)
+
+
+# what may go with a pressure law, and what is then found besides
+FLOORS = {
+    "drag": ("drag",), "air": ("air",), "stribeck": LAW_NUMBERS, "hyperbola": LAW_NUMBERS,
+    "two-valued": LAW_NUMBERS, "slope": ("slope_x", "slope_y"), "belt": ("belt_x", "belt_y"),
+}  # fmt: skip
+EVERY_FLOOR = "floors"  # of uniform pressure: all of these
+
+
+def variants_of(spec: FitSpec, names: Any) -> dict[str, FitSpec]:
+    """What is asked of each law by its name."""
+    if isinstance(names, str):
+        raise InputError(f"laws must be a list of names, got the text '{names}'")
+    floors = ["uniform", *(f"uniform+{one}" for one in FLOORS)]
+    names = [more for name in names for more in (floors if name == EVERY_FLOOR else [name])]
+    if len(set(names)) < len(names):
+        raise InputError(f"laws {', '.join(names)}: name each law once")
+    other = {"inner", *(one for numbers in FLOORS.values() for one in numbers)}
+    plain = tuple(n for n in spec.free if n not in other)
+    fixed = {n: v for n, v in spec.fixed.items() if n not in other}
+    variants = {}
+    for name in names:
+        pressure, plus, floor = name.partition("+")
+        if plus and floor not in FLOORS:
+            raise InputError(f"laws {name}: behind + may stand {', '.join(FLOORS)}")
+        puck, law = replace(spec.puck, pressure=law_of(pressure)), floor if floor in LAWS else ""
+        free = plain + FLOORS.get(floor, ())
+        variants[name] = replace(spec, puck=puck, free=free, fixed=fixed, law=law)
+        if variants[name].integrated:
+            refuse_integrated(variants[name])
+    return variants

@@ -1,5 +1,11 @@
 """The joint fit of slides that impacts join, and what it says of the impacts.
 
+Without angles a slide tells its spin by how it slows and bends: each friction has spins of its own,
+of either sign where the path hardly bends, and what the law of impact makes of them differs.  So
+frictions and tilts are tried in turn; with both held every slide is a problem of its own, and the
+few spins that suit it are found.  Candidates are all that slides and spins may go together, those
+first in which the slides fit best.
+
 Slides are joined by one restitution and one friction of the rims for all impacts of a kind.  That
 is a law, and it is judged: by how much χ² rises over that of slides with launches of their own, for
 as many conditions as there are unknowns less.  Where it fails the slides stay as they are.
@@ -10,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -17,21 +24,177 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.certainty import Certainty
 from puck_tables.fitting.estimate import Estimate, capped_squares, estimate
-from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.forward_model import WallLine
+from puck_tables.fitting.fit_spec import OF_PAIRS, OF_WALLS, FitSpec
+from puck_tables.fitting.forward_model import ImpactSpec, WallLine
 from puck_tables.fitting.impact_matching import (
-    CoupledFit,
     Line,
-    candidates_of,
-    coupled,
+    SlideIndex,
+    begin,
     matched_impacts,
+    radii_of,
+    wall_at,
 )
-from puck_tables.fitting.least_squares import ROBUST, multi_start
 from puck_tables.fitting.numbers import FOLLOWS, Number, quadratic
 from puck_tables.fitting.observations import Observations
-from puck_tables.fitting.parameters import OF_PAIRS, OF_WALLS
-from puck_tables.fitting.problem import Problem
-from puck_tables.fitting.touches import SlideIndex
+from puck_tables.fitting.problem import ROBUST, Problem, multi_start
+
+_GRIPS = 0.97  # of the impulse that stops the rims
+_REACH, _REACH_FRAMES = 0.4, 4.0  # of the time between impacts, and at least
+
+
+class CoupledFit(NamedTuple):
+    """Slides that are joined: what least squares are asked, unknowns to begin with.
+
+    ``pieces``: for each piece its track in ``problem``, and the first of its frames there.
+    """
+
+    problem: Problem
+    start: FloatArray
+    pieces: tuple[int, ...]
+
+
+def coupled(
+    problem: Problem, x: FloatArray, pieces: tuple[SlideIndex, ...], films: tuple[Observations,
+    ...], spec: FitSpec, lines: Sequence[Line],
+) -> list[CoupledFit]:  # fmt: skip
+    """The problem of slides that impacts join; none where there is no impact.
+
+    Where rims seem to stop on what they meet in each of several impacts there is another, in which
+    they may slide.  ``problem``, ``x``: of slides, each with a launch of its own, and a way in
+    which they may move; ``films``: the tracks, uncut; ``spec``: with the numbers of impacts.
+    """
+    matches = matched_impacts(problem, pieces, x)
+    if not matches:
+        return []
+    follows = {piece + 1 for match_ in matches for piece in match_.pieces}
+    starts_new = [n for n in range(len(pieces)) if n not in follows]
+    sequences = [[*range(*ends)] for ends in pairwise([*starts_new, len(pieces)])]
+    tracks, home = [], {}
+    for k, slides in enumerate(sequences):
+        first, last = problem.films[slides[0]], problem.films[slides[-1]]
+        whole = films[pieces[slides[0]].track]
+        inside = (whole.frame >= first.frame[0]) & (whole.frame <= last.frame[-1])
+        name = whole.name if len(slides) > 1 else first.name
+        tracks.append(replace(whole.part(inside), name=name))
+        home.update(dict.fromkeys(slides, k))
+    walls: list[WallLine | None] = []
+    starts: list[WallLine] = []
+    impact_specs = []
+    shift = problem.films[0].start - tracks[0].start
+    radius = radii_of(problem, x)[0]
+    step = max(film.usual_step for film in problem.films)
+    numbers: dict[int, int] = {}
+    for match_ in matches:
+        kink = match_.kinks_of_slides[0]
+        own = match_.pieces
+        ends = [problem.films[n + more].time[-1] for n in own for more in (0, 1)]
+        number = -1
+        if len(own) == 1:
+            known, wall = wall_at(lines, kink, radius) or (-1 - len(walls), None)
+            number = numbers.setdefault(known, len(walls))
+            if number == len(walls):
+                normal = np.array([math.cos(match_.toward), math.sin(match_.toward)])
+                away = float(kink.before[:2] @ normal) + radius
+                walls.append(wall)
+                starts.append(wall or WallLine(match_.toward, away))
+        films_met = tuple(home[n] for n in own)
+        reach = max(_REACH * float(min(ends)), _REACH_FRAMES * step)
+        impact_specs.append(ImpactSpec(kink.time + shift, reach, films_met, number))
+    sizes = {len(match_.kinks_of_slides) for match_ in matches}
+    grip = all(abs(1.0 + match_.tangential) > _GRIPS for match_ in matches)
+    specs = [spec.coupled(sizes, grip)]
+    if grip and len(matches) > 1:
+        specs += [other for other in [spec.coupled(sizes, False)] if other.free != specs[0].free]
+    firsts = [slides[0] for slides in sequences]
+    launches, result = problem.launches(x)[firsts], []
+    for one in specs:
+        shared = Problem(
+            one, tuple(tracks), problem.noise, problem.tall,
+            rests=tuple(problem.rests[n] for n in firsts) if problem.rests else (),
+            walls=tuple(walls), impact_specs=tuple(impact_specs), known=problem.known,
+            smooth=problem.smooth,
+        )  # fmt: skip
+        values = {**problem.numbers_at(x), **begin(one, matches)}
+        for name in one.free:
+            low, high = one.limits(name)
+            values[name] = min(max(values[name], low), high)
+        start = shared.unknowns(values, launches, tuple(starts))
+        result.append(CoupledFit(shared, start, tuple(home[n] for n in range(len(pieces)))))
+    return result
+
+
+_DECELS = (0.5, 0.62, 0.77, 1.0, 1.3, 1.65)  # times the one that was found
+_DELTAS = (0.05, 0.2, 0.5)  # δ to begin from
+_RATIOS = (0.2, 0.8, 2.0)  # rω/v, of either sign
+_MODERATE = 4.0  # rω/v: the width of the prior of spins, of which few frames tell nothing
+_STEPS = ((2, 4), (8, 3))  # and how many spins then go on
+_FRAMES = 40  # to which those spins are fitted: enough for a start
+_CLOSE = 60.0  # what another spin of a slide may cost more
+_ALIKE = 0.15  # of v/r: spins so near are one
+_EACH = 6  # ways of one friction
+_LEAST_SPEED = 1e-6  # m/s, that is divided by
+
+Option = tuple[float, FloatArray]
+
+
+def candidates_of(slides: Estimate) -> list[FloatArray]:
+    """Unknowns of slides apart, those that were found first.
+
+    Where all slides have angles there are no others.
+    """
+    problem = slides.problem
+    if all(film.angle is not None for film in problem.films):
+        return [slides.x]
+    spec, numbers = problem.spec, problem.numbers_at(slides.x)
+    decel, delta, _ = spec.scales(numbers)
+    slows = {"friction", "decel", "gravity"} & {*spec.free}
+    decels = [decel * one for one in (_DECELS if slows else (1.0,))]
+    deltas = _DELTAS if {"delta", "height"} & {*spec.free} else (delta,)
+    low, high = (ends[: len(spec.free)] for ends in problem.limits)
+    ranked: list[tuple[float, FloatArray]] = []
+    for one in decels:
+        mine: list[tuple[float, FloatArray]] = []
+        for tilt in deltas:
+            result = {**numbers, **spec.with_scales(one, tilt)}
+            values = np.clip([result[name] for name in spec.free], low, high).tolist()
+            result = dict(zip(spec.free, values, strict=True))
+            options = [_spins_of(slides, n, result) for n in range(len(problem.films))]
+            for chosen in product(*options):
+                costs, launches = zip(*chosen, strict=True)
+                mine.append((sum(costs), problem.unknowns(result, np.array(launches))))
+        ranked += sorted(mine, key=lambda option: option[0])[:_EACH]
+    ranked.sort(key=lambda option: option[0])
+    return [slides.x, *(x for _, x in ranked)]
+
+
+def _spins_of(slides: Estimate, n: int, result: dict[str, float]) -> list[Option]:
+    """Launches of a slide, with what they cost, for numbers of the puck that are held."""
+    problem = slides.problem
+    launch = problem.launches(slides.x)[n]
+    film = problem.films[n]
+    if film.angle is not None or problem.spinless[n] or (problem.rests and problem.rests[n]):
+        return [(0.0, launch)]
+    radius = problem.spec.scales(result)[2]
+    speed = max(math.hypot(launch[2], launch[3]), _LEAST_SPEED)
+    # of few frames no spin but an absurd one is seen
+    moderate = {"launch_spin": (0.0, _MODERATE * speed / radius)}
+    fixed, priors = {**problem.spec.fixed, **result}, {**moderate, **problem.spec.priors}
+    held = replace(problem.spec, free=(), fixed=fixed, priors=priors)
+    alone = Problem(held, (film.thinned(_FRAMES),), problem.noise, problem.tall)
+    starts = []
+    for ratio, sign in product(_RATIOS, (1.0, -1.0)):
+        other = launch.copy()
+        other[4] = held.fixed.get("launch_spin", sign * ratio * speed / radius)
+        starts.append((alone, alone.unknowns({}, other[None])))
+    walked = multi_start(starts, _STEPS, ROBUST)
+    options: list[Option] = []
+    for x, cost in walked:
+        one = alone.launches(x)[0]
+        new = all(abs(one[4] - other[4]) > _ALIKE * speed / radius for _, other in options)
+        if cost < walked[0][1] + _CLOSE and new:
+            options.append((cost, one))
+    return options
+
 
 _BY_CHANCE = 1e-5  # of the rise of χ²: less, and the law of impact is not that of these slides
 _STEP = 1e-6  # of an unknown, in differences; of friction: a rim that is as close to it slides

@@ -6,6 +6,10 @@ squares, fully efficient, and intervals keep their coverage where one frame in t
 
 A mark that is lost for a frame, or a blurred one, lies beside its neighbours.  Frames that lie far
 off together, and go there smoothly, are good ones: it is the model that is wrong.
+
+Noise σ of places, σ_a of angles and σ_t of time stamps that are not given are the most likely, from
+
+    −2 ln L = Σ ln det C + rᵀ C⁻¹ r ,   det C = σ⁴ σ_a² (1 + σ_t² (v²/σ² + ω²/σ_a²)) .
 """
 
 from __future__ import annotations
@@ -14,20 +18,28 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.forward_model import RATE
-from puck_tables.fitting.least_squares import compact, minimise, minimise_robustly
-from puck_tables.fitting.observations import MEDIAN
-from puck_tables.fitting.problem import ANGLE, PLACE, PRIOR, UNSEEN, Problem, likeliest
+from puck_tables.fitting.observations import MEDIAN, Mask
+from puck_tables.fitting.problem import (
+    ANGLE,
+    PLACE,
+    PRIOR,
+    UNSEEN,
+    Known,
+    Problem,
+    compact,
+    minimise,
+    minimise_robustly,
+)
 
 _AROUND = 4  # frames to either side
 _IN_A_ROW = 5  # frames in a row that may be strays by chance
 _LEAP, _MORE = 6.0, 3.0  # standard deviations, and times the way between frames beside
 
 
-def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArray[np.bool_]:
+def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> Mask:
     """Which frames (n,) are far off; of these only strays, if ``strict``.
 
     ``deviations`` (n, k): residuals of each frame in units of the noise; ``limit``: of the sum of
@@ -39,7 +51,7 @@ def outliers_of(deviations: FloatArray, limit: float, strict: bool) -> npt.NDArr
     >>> np.flatnonzero(outliers_of(deviations, 16.0, True)).tolist()
     [7]
     """
-    outlying: npt.NDArray[np.bool_] = (deviations**2).sum(axis=1) > limit
+    outlying: Mask = (deviations**2).sum(axis=1) > limit
     if not strict or outlying.sum() < _IN_A_ROW:
         return outlying
     result = outlying.copy()
@@ -77,6 +89,7 @@ _FEW = 2.5  # residuals for each unknown
 _LEAST_DEGREES = 0.5  # residuals: of less nothing is an outlier
 _ROUNDS = 6  # of a fit, its noise and what is left out, at most
 _CONVERGED = 1e-3  # of a standard deviation of the noise
+_LEAST, _MOST = 1e-4, 30.0  # times the noise of a place over the speed: σ_t is looked for within
 _AWAY = 1.5  # times the noise: a start so far off is fitted robustly first
 
 
@@ -91,7 +104,7 @@ class Estimate:
 
     problem: Problem
     x: FloatArray
-    kept: npt.NDArray[np.bool_]
+    kept: Mask
     residuals: FloatArray
     jacobian: FloatArray
     minima: tuple[FloatArray, ...] = ()
@@ -153,8 +166,19 @@ def estimate(problem: Problem, start: FloatArray, strict: bool = False) -> Estim
         if change < _CONVERGED and np.array_equal(again, kept):
             break
         kept = again
-    x = problem.within(x)
-    return Estimate(problem, x, kept, rows, problem.jacobian(x))
+    x = _within(problem, x)
+    return Estimate(problem, x, kept, rows, problem.residuals_and_jacobian(x)[1])
+
+
+def _within(problem: Problem, x: FloatArray) -> FloatArray:
+    """Unknowns with the height of the lowest of all pucks that move so, where many do."""
+    spec = problem.spec
+    delta, highest = spec.scales(problem.numbers_at(x))[1], spec.highest(problem.tall)
+    if "height" not in spec.free or not delta > highest:
+        return x
+    lower = x.copy()
+    lower[spec.free.index("height")] *= highest / delta
+    return lower
 
 
 def capped_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
@@ -162,8 +186,7 @@ def capped_squares(problem: Problem, x: FloatArray) -> list[FloatArray]:
     rows, result = problem.residuals(x), []
     for film, (one, two, turn) in zip(problem.films, problem.each(), strict=True):
         squares = np.minimum(rows[one] ** 2 + rows[two] ** 2, FARTHEST_PLACE)
-        if film.angle is not None:
-            squares[np.isfinite(film.angle)] += np.minimum(rows[turn] ** 2, FARTHEST**2)
+        squares[np.isfinite(film.angles)] += np.minimum(rows[turn] ** 2, FARTHEST**2)
         result.append(squares)
     return result
 
@@ -176,7 +199,7 @@ def only_outliers(result: Estimate) -> bool:
     return np.array_equal(kept, _kept(result.problem, rows, degrees, True))
 
 
-def _foreseen(slopes: FloatArray, kept: npt.NDArray[np.bool_]) -> FloatArray:
+def _foreseen(slopes: FloatArray, kept: Mask) -> FloatArray:
     """How far off frames that are left out may be (n,): by what is not known of the motion, too."""
     result = np.ones(kept.size)
     if not kept.all():
@@ -191,16 +214,14 @@ def _foreseen(slopes: FloatArray, kept: npt.NDArray[np.bool_]) -> FloatArray:
     return result
 
 
-def _kept(
-    problem: Problem, rows: FloatArray, degrees: list[float], strict: bool
-) -> npt.NDArray[np.bool_]:
+def _kept(problem: Problem, rows: FloatArray, degrees: list[float], strict: bool) -> Mask:
     """Residuals of frames that are no outliers; a place counts as a whole.
 
     ``degrees``: how many residuals tell the noise: it is the less sure the fewer they are, and
     those beyond it count no more in it.  So what is an outlier is farther off: by chance as seldom,
     under Student's t, as a good frame beyond four standard deviations that are known.
     """
-    kept: npt.NDArray[np.bool_] = problem.kinds != UNSEEN
+    kept: Mask = problem.kinds != UNSEEN
     if rows.size < _FEW * len(problem.names):  # too few to tell what is one
         return kept
     each = problem.each()
@@ -237,7 +258,7 @@ def _wide(deviations: list[FloatArray], usual: float) -> float:
 
 def _noise(
     problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float],
-    kept: npt.NDArray[np.bool_],
+    kept: Mask,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter.
 
@@ -248,9 +269,8 @@ def _noise(
     if not all(known) and (jitter > 0.0 or not known.jitter):
         count = []
         for film, (along, across, turn) in zip(problem.films, problem.each(), strict=True):
-            angled = np.zeros(film.time.size, bool)
-            if film.angle is not None:
-                angled[np.isfinite(film.angle)] = kept[turn]
+            angled = np.isfinite(film.angles)
+            angled[angled] = kept[turn]
             count.append(np.stack([kept[along], angled, kept[across]]))
         seen = int((kept & (problem.kinds <= ANGLE)).sum())
         noise, jitter = likeliest(
@@ -271,9 +291,7 @@ def _noise(
     return (place, angle), jitter
 
 
-def _freedoms(
-    problem: Problem, rows: FloatArray, slopes: FloatArray, kept: npt.NDArray[np.bool_]
-) -> list[float]:
+def _freedoms(problem: Problem, rows: FloatArray, slopes: FloatArray, kept: Mask) -> list[float]:
     """How many residuals told the noise of places, and of angles; infinite where it is given.
 
     Less what the unknowns take of them.
@@ -292,3 +310,56 @@ def freedom(result: Estimate) -> float:
     every = _freedoms(result.problem, result.residuals, result.jacobian, result.kept)
     kinds = result.problem.kinds[result.kept]
     return min((free for kind, free in enumerate(every) if (kinds == kind).any()), default=math.inf)
+
+
+def likeliest(
+    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray, rates:
+    FloatArray, kept: Mask, share: float,
+) -> tuple[tuple[float, float], float]:  # fmt: skip
+    """The noise of places and angles, and σ_t, under which residuals are most likely.
+
+    ``deviations`` (3, n): m and rad, NaN where no angle is; ``rates`` (3, n); ``kept`` (3, n):
+    whether the place along the motion, the angle, the place across it count; ``share``: of the
+    squares that the unknowns have left.
+    """
+    from scipy.optimize import minimize
+
+    placed, angled = kept[0], kept[1] & np.isfinite(deviations[2])
+    x, y, turn = np.where([placed, placed, angled], deviations, 0.0)
+    vx, vy, spin = rates
+    speed = float(np.sqrt(np.mean(vx**2 + vy**2))) or 1.0
+    usual = noise[0] / speed
+    begin = np.log([noise[0], noise[1], jitter if jitter > 0.0 else 0.3 * usual])
+    free = [k for k, one in enumerate(known) if not one and (k != 1 or angled.any())]
+    if not free:
+        return noise, jitter
+
+    def cost(logs: FloatArray) -> float:
+        every = begin.copy()
+        every[free] = logs
+        place, angle, stamp = np.exp(2.0 * every)
+        if known.jitter:
+            stamp = jitter**2
+        gain = placed * (vx**2 + vy**2) / place + angled * spin**2 / angle
+        squares = (x**2 + y**2) / place + turn**2 / angle
+        ahead = (x * vx + y * vy) / place + turn * spin / angle
+        squares -= stamp * ahead**2 / (1.0 + stamp * gain)
+        logarithm = float(kept[[0, 2]].sum()) * math.log(place) + angled.sum() * math.log(angle)
+        return float(logarithm + np.log1p(stamp * gain).sum() + squares.sum() / share)
+
+    bounds = [
+        (math.log(_LEAST * usual), math.log(_MOST * usual)) if k == 2
+        else (begin[k] - 3.0, begin[k] + 3.0) for k in free
+    ]  # fmt: skip
+    result = begin.copy()
+    result[free] = minimize(cost, begin[free], method="L-BFGS-B", bounds=bounds).x
+    place, angle, stamp = np.exp(result).tolist()
+    return (place, angle), jitter if known.jitter else stamp
+
+
+def chi2_under(result: Estimate, noise: tuple[float, float]) -> float:
+    """χ² under a noise, of all frames, with no residual beyond the farthest."""
+    problem = result.problem.with_noise(noise, result.x, result.kept)
+    total = sum(float(squares.sum()) for squares in capped_squares(problem, result.x))
+    total += sum(((result.x[k] - value) / spread) ** 2 for k, value, spread in problem.priors)
+    return total if math.isfinite(total) else math.inf

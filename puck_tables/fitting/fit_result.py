@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -16,24 +17,18 @@ from puck_tables._core.lazy import above
 from puck_tables._core.safe_write import write_bytes
 from puck_tables._version import __version__
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import Certainty, profile_point
+from puck_tables.fitting.certainty import profile_point
 from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_files import (
-    KIND,
-    as_json,
-    frames_of,
-    numbers_as_json,
-    refuse_unplayable,
-)
-from puck_tables.fitting.model_comparison import HeldOut, LawScore, law_over, verdict
-from puck_tables.fitting.numbers import EstimatedLaunch, Number
+from puck_tables.fitting.fit_spec import INTEGRATED
+from puck_tables.fitting.forecast import HeldOut
+from puck_tables.fitting.misfit import LawScore, verdict
+from puck_tables.fitting.numbers import KIND, EstimatedLaunch, Number, as_json, refuse_unplayable
 from puck_tables.fitting.observations import Observations
-from puck_tables.fitting.parameters import INTEGRATED
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.remarks import Remarked
-from puck_tables.fitting.residuals import SideForces
-from puck_tables.io.columns import Dataset
+from puck_tables.fitting.slowing import law_over
+from puck_tables.io.columns import Dataset, Variable, variable
 from puck_tables.io.formats import FORMATS, ending_of
 from puck_tables.puck import Puck
 from puck_tables.result import Result
@@ -42,54 +37,40 @@ if TYPE_CHECKING:
     from puck_tables.trajectory import Trajectory
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Fit(Remarked, Result):
     """A puck and its launches, found from tracks.
 
     ``numbers``: :class:`Number` by name (``fit["friction"]``): found, following from what was
     found, or known; ``launches``: one for each slide.  ``chi2`` over ``degrees`` of freedom;
     ``noise`` (m, rad) and ``jitter`` (s, of time stamps), those of the residuals unless
-    ``noise_known``, and ``smooth_noise``, judged without any model of the puck; ``outliers``: share
-    of the observations that are left out; ``left_out``: (track, frames at its start, at its end)
-    that are no free motion; ``cut_off``: a sentence where these are many, with what they would
-    change; ``runs``, ``drift``: probabilities of residuals so patterned by chance;
-    ``blind``: a sentence for each thing that the tracks do not tell; ``astray``: why nobody would
-    believe what was found, empty where somebody may; ``laws``: :class:`LawScore` of those compared,
-    best first; ``held_out``: how well frames that were held out are predicted; ``impacts``:
-    :class:`Impact` of those looked for; ``untied``: why they do not join the slides, empty where
-    they do; ``not_met``: a sentence for each wall given on which there is none.  ``forces``: what a
-    table out of level, drag or air would do to it; ``uncut``: the tracks with frames that are no
-    free motion; ``misfit``: what else tracks, floor or radius may be, if that fits better;
-    ``constant_chi2``: χ² of one friction for all slip speeds, where one over them was found.
+    ``noise_known``; ``outliers``: share of the observations that are left out; ``left_out``:
+    (track, frames at its start, at its end) that are no free motion; ``cut_off``: a sentence where
+    these are many, with what they would change; ``runs``, ``drift``: probabilities of residuals so
+    patterned by chance; ``blind``: a sentence for each thing that the tracks do not tell;
+    ``astray``: why nobody would believe what was found, empty where somebody may; ``laws``:
+    :class:`LawScore` of those compared, best first; ``held_out``: how well frames that were held
+    out are predicted; ``impacts``: :class:`Impact` of those looked for; ``untied``: why they do not
+    join the slides, empty where they do; ``not_met``: a sentence for each wall given on which there
+    is none. ``forces``: what a table out of level, drag or air would do to it; ``uncut``: the
+    tracks with frames that are no free motion; ``misfit``: what else tracks, floor or radius may
+    be, if that fits better; ``constant_chi2``: χ² of one friction for all slip speeds, where one
+    over them was found.
     """
 
-    given: Puck
-    numbers: dict[str, Number]
-    launches: tuple[EstimatedLaunch, ...]
     chi2: float
     degrees: int
-    noise: tuple[float, float]
-    jitter: float
     noise_known: Known
-    smooth_noise: tuple[float, float]
-    outliers: float
     runs: float
-    drift: float
     left_out: tuple[tuple[str, int, int], ...]
     cut_off: str
     blind: tuple[str, ...]
     laws: tuple[LawScore, ...]
     held_out: HeldOut | None
     impacts: tuple[Impact, ...]
-    untied: str
-    not_met: tuple[str, ...]
     constant_chi2: float
-    estimate: Estimate = field(repr=False)
-    certainty: Certainty = field(repr=False)
-    forces: SideForces = field(default=SideForces(), repr=False)
-    uncut: tuple[Observations, ...] = field(default=(), repr=False)
-    misfit: str = ""
-    astray: str = ""
+    uncut: tuple[Observations, ...]
+    astray: str
 
     picture: ClassVar[str] = "fit"
 
@@ -329,7 +310,7 @@ class Fit(Remarked, Result):
             "drift": self.drift, **self.puck.described(),
         }  # fmt: skip
         texts = {"summary": (json.dumps(self.summary()), "all that was found, as JSON")}
-        columns = {**frames_of(self.estimate), **numbers_as_json(self.numbers)}
+        columns = {**_frames(self.estimate), **_number_columns(self.numbers)}
         return Dataset({}, columns, attributes, texts)
 
     def save(self, path: str | Path, overwrite: bool = False) -> None:
@@ -347,3 +328,39 @@ class Fit(Remarked, Result):
             return
         ending_of(path, FORMATS)
         super().save(path, overwrite)
+
+
+_FRAMES = (
+    "track", "frame", "time", "seen_x", "seen_y", "seen_angle", "fit_x", "fit_y", "fit_angle",
+    "counts_place", "counts_angle",
+)  # fmt: skip
+
+
+def _frames(result: Estimate) -> dict[str, Variable]:
+    """Columns of all frames: what was seen, the model, and whether it counts."""
+    problem, kept = result.problem, result.kept
+    rows: dict[str, list[Any]] = {name: [] for name in _FRAMES}
+    parts = zip(problem.films, problem.paths(result.x), problem.each(), strict=True)
+    for n, (film, path, (x, _, turn)) in enumerate(parts):
+        counts = np.zeros(film.time.size, np.int8)
+        counts[np.isfinite(film.angles)] = kept[turn]
+        values = (
+            np.full(film.time.size, n), film.frame, film.start + film.time, film.place[:, 0],
+            film.place[:, 1], film.angles, *path, kept[x].astype(np.int8), counts,
+        )  # fmt: skip
+        for name, value in zip(rows, values, strict=True):
+            rows[name].append(value)
+    return {
+        name: variable(name, np.concatenate(values), ("observation",))
+        for name, values in rows.items()
+    }
+
+
+def _number_columns(numbers: Mapping[str, Number]) -> dict[str, Variable]:
+    """Columns of the numbers of the puck."""
+    known = {name: number for name, number in numbers.items() if math.isfinite(number.value)}
+    columns = {"number_name": variable("number_name", list(known), ("number",))}
+    for what in ("value", "error", "low", "high"):
+        of_all = np.array([getattr(number, what) for number in known.values()])
+        columns[f"number_{what}"] = variable(f"number_{what}", of_all, ("number",))
+    return columns

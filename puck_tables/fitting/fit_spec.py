@@ -11,37 +11,113 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 from puck_tables.contact.base import Base
-from puck_tables.contact.laws import law_of
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.fitting.forward_model import Moving, Rims
-from puck_tables.fitting.parameters import (
-    DRAGS,
-    INTEGRATED,
-    LARGEST,
-    LAW_NUMBERS,
-    MARK,
-    MOST,
-    NODES,
-    NOTHING,
-    OF_IMPACTS,
-    OF_PAIRS,
-    OF_WALLS,
-    OWN_MOTION,
-    POSITIVE,
-    PUCK,
-    SMALLEST,
-    TALLEST,
-    WALL,
-    Parameter,
-    parameters_of,
-)
-from puck_tables.fitting.speed_motion import LAWS, Drags, SpeedFriction, law_named
+from puck_tables.fitting.speed_motion import Drags, SpeedFriction, law_named
 from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
+from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
 from puck_tables.puck import Puck
+
+
+class Parameter(NamedTuple):
+    """Unit, the allowed range, what values are plausible within, and what it is."""
+
+    unit: str
+    low: float
+    high: float
+    plausible: float
+    words: str
+
+
+MOST_NODES = 8  # slip speeds of a law over speed: each is one more number to find
+NODES = tuple(f"friction_{k}" for k in range(MOST_NODES))  # f at slip speeds that are given
+_AT_SPEED = Parameter("1", 0.0, math.inf, 1.0, "friction coefficient at a slip speed")
+PUCK = {
+    "friction": Parameter("1", 0.0, math.inf, 1.0, "Coulomb's coefficient f"),
+    "decel": Parameter("m/s^2", 0.0, math.inf, 10.0, "deceleration of a slide, f g"),
+    "delta": Parameter("1", 0.0, 4.0, 1.0, "dimensionless height 2 f h / r"),
+    "height": Parameter("m", 0.0, math.inf, 0.0, "height of the puck"),
+    "radius": Parameter("m", 0.0, math.inf, 0.0, "radius of the base"),
+    "gravity": Parameter("m/s^2", 0.0, math.inf, 10.0, "gravity"),
+    "gyration": Parameter(
+        "1", SMALLEST_GYRATION, LARGEST_GYRATION, 0.5, "radius of gyration over r"
+    ),
+    "inner": Parameter("1", 0.0, 1.0, 0.5, "inner radius of an annulus over r"),
+    "drag": Parameter("1/s", -math.inf, math.inf, 1.0, "linear drag, of speed and of spin"),
+    "air": Parameter("1/m", 0.0, math.inf, 1.0, "drag of the speed squared over the mass"),
+    "spin_drag": Parameter("1/s", 0.0, math.inf, 1.0, "drag of the spin alone"),
+    "friction_rest": Parameter("1", 0.0, math.inf, 1.0, "friction of a named law at rest"),
+    "law_speed": Parameter("m/s", 0.0, math.inf, 1.0, "slip speed of a named law"),
+    "slope_x": Parameter("1", -1.0, 1.0, 0.1, "pull of a slope along x, over g"),
+    "slope_y": Parameter("1", -1.0, 1.0, 0.1, "pull of a slope along y, over g"),
+    "belt_x": Parameter("m/s", -100.0, 100.0, 1.0, "velocity of the floor along x"),
+    "belt_y": Parameter("m/s", -100.0, 100.0, 1.0, "velocity of the floor along y"),
+    "mark_x": Parameter("m", -math.inf, math.inf, 0.0, "mark off the centre, along x of the body"),
+    "mark_y": Parameter("m", -math.inf, math.inf, 0.0, "mark off the centre, along y of the body"),
+    "readout": Parameter("s", -1.0, 1.0, 0.02, "time in which the lines of a picture are read"),
+    "restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of a wall"),
+    "rim_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rim on a wall"),
+    "tangential": Parameter("1", -1.0, 1.0, 1.0, "tangential restitution of a wall"),
+    "pair_restitution": Parameter("1", 0.0, 1.0, 1.0, "restitution e of two pucks"),
+    "pair_friction": Parameter("1", 0.0, math.inf, 1.0, "friction of the rims of two pucks"),
+    "pair_tangential": Parameter("1", -1.0, 1.0, 1.0, "tangential restitution of two pucks"),
+    "mass_ratio": Parameter("1", 0.0, math.inf, 1.0, "mass of the second puck over the first's"),
+    **dict.fromkeys(NODES, _AT_SPEED),
+}
+LAUNCH = {
+    "launch_x": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along x"),
+    "launch_y": Parameter("m", -math.inf, math.inf, 0.0, "place at the launch along y"),
+    "launch_vx": Parameter("m/s", -math.inf, math.inf, 0.0, "launch velocity along x"),
+    "launch_vy": Parameter("m/s", -math.inf, math.inf, 0.0, "launch velocity along y"),
+    "launch_spin": Parameter("rad/s", -math.inf, math.inf, 0.0, "launch spin"),
+    "launch_angle": Parameter("rad", -math.inf, math.inf, 1.0, "angle of the body at the launch"),
+}
+WALL = {
+    "wall_angle": Parameter("rad", -math.inf, math.inf, 1.0, "direction to the wall"),
+    "wall_distance": Parameter("m", -math.inf, math.inf, 0.0, "distance of the wall from (0, 0)"),
+}
+ALL = {**PUCK, **LAUNCH}
+# what impacts have besides: unknown values of it mean these
+OF_WALLS = {"restitution": 1.0, "rim_friction": math.inf, "tangential": 0.0}
+OF_PAIRS = {
+    "pair_restitution": 1.0, "pair_friction": math.inf, "pair_tangential": 0.0, "mass_ratio": 1.0,
+}  # fmt: skip
+OF_IMPACTS = {**OF_WALLS, **OF_PAIRS}
+# more of it has no puck on a film: where a fit runs away it ends here; a friction is far larger
+# where units are wrong, which is then said
+MOST = {
+    "friction": 1e6, "decel": 1e7, "gravity": 1e3, "drag": 100.0, "air": 100.0,
+    "spin_drag": 100.0, "friction_rest": 10.0, "law_speed": 100.0, "rim_friction": 100.0,
+    "pair_friction": 100.0, "mass_ratio": 1e3, **dict.fromkeys(NODES, 10.0),
+}  # fmt: skip
+TALLEST, LARGEST, SMALLEST = 100.0, 1e6, 1e-6  # times the radius; m
+# 0 is none of their values
+POSITIVE = ("radius", "gravity", "friction", "decel", "mass_ratio", "friction_rest", "law_speed")
+OWN_MOTION = ("gyration", "inner")  # at each value of these unit motions are another curve
+MARK = ("mark_x", "mark_y")
+DRAGS, LAW_NUMBERS = ("air", "spin_drag"), ("friction_rest", "law_speed")
+# of which no look-up has the motions
+INTEGRATED = (*DRAGS, "slope_x", "slope_y", "belt_x", "belt_y", *LAW_NUMBERS)
+# values that do nothing, or next to it: of no drag at all slopes to it are not computed
+NOTHING = {"drag": 0.01, **dict.fromkeys((*INTEGRATED[: -len(LAW_NUMBERS)], *MARK), 0.0)}
+
+
+def parameters_of(reach: float | None) -> Mapping[str, Parameter]:
+    """All parameters of a puck and its launch, of one on a base that reaches so far (m) its own.
+
+    >>> parameters_of(None)["gyration"][:3], parameters_of(0.25)["gyration"][:3]
+    (('1', 0.1, 10.0), ('m', 0.025, 2.5))
+    """
+    if reach is None:
+        return ALL
+    _, low, high, plausible, _ = ALL["gyration"]
+    own = Parameter("m", low * reach, high * reach, plausible * reach, "radius of gyration")
+    return {**ALL, "gyration": own}
+
 
 _KIND = (*OWN_MOTION, "drag", *INTEGRATED)  # change the curve itself
 TINY = 1e-30  # step of derivatives along the imaginary axis
@@ -64,19 +140,13 @@ class FitSpec:
     start : values to begin with, besides those that the tracks suggest
     freed : names that are found since they have a prior or bounds
     of_impacts : what is taken of the impacts that there are, by name, where nothing else is said
-
     speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
     between : cubic or linear, f between these speeds
     law : a law over slip speed by its name, '' for none
     base : of a puck that is not round; its reach is then the radius of ``puck``, gyration is in m
 
-    Raises
-    ------
-    InputError
-        If the friction is neither free nor known.
+    Raises InputError if the friction is neither free nor known.
 
-    Examples
-    --------
     >>> spec = FitSpec(Puck(radius=0.0381), ("friction", "delta"), {}, {}, {}, {})
     >>> spec.scales({"friction": 0.2, "delta": 0.5})[0]
     1.96133
@@ -96,8 +166,8 @@ class FitSpec:
     base: Base | None = None
 
     def __post_init__(self) -> None:
-        scale = {"friction", "decel"} & {*self.free, *self.fixed}
-        if not scale and not self.speeds and self.puck.friction == 0.0:
+        scale = self.speeds or {"friction", "decel"} & self.named
+        if not scale and self.puck.friction == 0.0:
             raise InputError(
                 "the friction is neither free nor known: name friction in free, or give the puck "
                 "its friction"
@@ -113,10 +183,10 @@ class FitSpec:
         """The unit of a radius of gyration: the radius, but m on a base."""
         return 1.0 if self.base is None else self.base.reach
 
-    @property
-    def uses_delta(self) -> bool:
-        """Whether δ is given itself, not by height."""
-        return "delta" in self.free or "delta" in self.fixed
+    @cached_property
+    def named(self) -> frozenset[str]:
+        """What is found, and what is held."""
+        return frozenset((*self.free, *self.fixed))
 
     def known(self) -> dict[str, float]:
         """All numbers of the puck that are not found."""
@@ -129,24 +199,25 @@ class FitSpec:
             numbers["inner"] = float(puck.body.law.name.partition(":")[2])
         return {**numbers, **self.of_impacts, **{n: v for n, v in self.fixed.items() if n in PUCK}}
 
+    def numbers(self, result: Mapping[str, Any]) -> dict[str, Any]:
+        """All numbers of the puck where some are found, real or complex."""
+        return {**self.known(), **result}
+
     def scales(self, result: Mapping[str, Any]) -> tuple[Any, Any, Any]:
         """J, δ and r of what is found; of complex numbers, too."""
-        all_of = {**self.known(), **result}
+        all_of = self.numbers(result)
         if self.speeds or self.law:  # that of a puck about to stop
             all_of["friction"] = all_of[NODES[0] if self.speeds else LAW_NUMBERS[0]]
-        decel = (
-            all_of["decel"]
-            if "decel" in {*self.free, *self.fixed}
-            else all_of["friction"] * all_of["gravity"]
-        )
-        if self.uses_delta:
+        direct = "decel" in self.named
+        decel = all_of["decel"] if direct else all_of["friction"] * all_of["gravity"]
+        if "delta" in self.named:
             return decel, all_of["delta"], all_of["radius"]
         friction = decel / all_of["gravity"]
         return decel, 2.0 * friction * all_of["height"] / all_of["radius"], all_of["radius"]
 
     def all_at(self, result: Mapping[str, Any]) -> dict[str, Any]:
         """All numbers of the puck where some are found, real or complex; J, δ, f and h follow."""
-        numbers = {**self.known(), **result}
+        numbers = self.numbers(result)
         decel, delta, radius = self.scales(result)
         friction = decel / numbers["gravity"]
         height = 0.5 * delta * radius / friction if friction != 0.0 else 0.0
@@ -200,15 +271,6 @@ class FitSpec:
         numbers = {**defaults, **self.fixed, **result}
         return Rims(*(numbers[name] for name in defaults), *([] if pair else [math.inf]))
 
-    def mark(self, result: Mapping[str, float]) -> tuple[float, float]:
-        """Where what is tracked lies off the centre of mass, along the axes of the body, m."""
-        values = {**dict.fromkeys(MARK, 0.0), **self.fixed, **result}
-        return values["mark_x"], values["mark_y"]
-
-    def readout(self, result: Mapping[str, float]) -> float:
-        """The time in which a picture is read, s."""
-        return {**self.fixed, **result}.get("readout", 0.0)
-
     def changes_motion(self, name: str) -> bool:
         """Whether a parameter is none of the scales."""
         scale = bool(self.integrated) and name in ("friction", "decel", "gravity")
@@ -217,35 +279,7 @@ class FitSpec:
     @property
     def integrated(self) -> tuple[str, ...]:
         """What is found, or known, with which no look-up has the motions."""
-        return tuple(name for name in INTEGRATED if name in (*self.free, *self.fixed))
-
-    def with_law(self, law: str) -> FitSpec:
-        """What is asked with a law over slip speed by its name, whose numbers are found too."""
-        if law not in LAWS:
-            raise InputError(f"law must be one of {', '.join(LAWS)}, got {law!r:.40}")
-        if "friction" not in self.free:
-            raise InputError("a law over slip speed is found: do not give the friction")
-        more = tuple(n for n in LAW_NUMBERS if n not in self.free and n not in self.fixed)
-        return replace(self, law=law, free=(*self.free, *more))
-
-    def refuse_integrated(self) -> None:
-        """Refuse what does not go with motions that are integrated."""
-        named = self.integrated
-        self._refuse_pressure(f"{' and '.join(named)} are")
-        if not self.law and any(name in LAW_NUMBERS for name in named):
-            raise InputError(
-                f"{' and '.join(LAW_NUMBERS)} are numbers of a law over slip speed: name it "
-                f"(--law, law=): {', '.join(LAWS)}"
-            )
-
-    def _refuse_pressure(self, what: str) -> None:
-        """Refuse pressure, or a base, under which no such motion is integrated."""
-        if self.base is not None:
-            raise InputError(f"{what} found of round pucks alone, not of base {self.base.name}")
-        if self.puck.body.law.name != "uniform" or "inner" in (*self.free, *self.fixed):
-            raise InputError(
-                f"{what} found of uniform pressure alone, not of {self.puck.body.law.name}"
-            )
+        return tuple(name for name in INTEGRATED if name in self.named)
 
     def plain(self) -> FitSpec:
         """What is asked without what is integrated: to begin from."""
@@ -255,13 +289,8 @@ class FitSpec:
 
     def moving(self, result: Mapping[str, float], tall: bool) -> Moving:
         """What moves the puck."""
-        decel, delta, radius = self.scales(result)
-        numbers = {**self.known(), **result}
-        pressure: Any = self.puck.body.law
-        if "inner" in result or "inner" in self.fixed:
-            pressure = f"annulus:{numbers['inner']!r}"
-        motions = self._motions(pressure, numbers["gyration"], tall)
-        by_speed = None
+        (decel, delta, radius), numbers = self.scales(result), self.numbers(result)
+        motions, by_speed = self._motions(numbers, tall), None
         if self.speeds or self.integrated:
             g = numbers["gravity"]
             law = self.speed_law(numbers) if self.speeds or self.law else float(decel / g)
@@ -280,45 +309,56 @@ class FitSpec:
         values = [numbers[name] for name in NODES[: len(self.speeds)]]
         return SpeedLaw(list(self.speeds), values, self.between)
 
-    def over(self, speeds: tuple[float, ...], between: str) -> FitSpec:
-        """What is asked with a friction coefficient for each of these slip speeds."""
-        for name in ("decel", "gravity", "drag", *INTEGRATED, "inner"):
-            if name in self.free or name in self.fixed:
-                raise InputError(
-                    f"{name} cannot be found or fixed beside a friction over slip speed: leave it "
-                    "out"
-                )
-        if "friction" not in self.free:
-            raise InputError("a friction over slip speed is found: do not give the friction")
-        self._refuse_pressure("a friction over slip speed is")
-        nodes = NODES[: len(speeds)]
-        free = (*nodes, *(name for name in self.free if name != "friction"))
-        bounds, priors = (
-            {**of, **(dict.fromkeys(nodes, of["friction"]) if "friction" in of else {})}
-            for of in (self.bounds, self.priors)
-        )
-        return replace(
-            self, free=free, bounds=bounds, priors=priors, speeds=speeds, between=between
-        )
-
     def highest(self, tall: bool) -> float:
         """The largest δ of which motions are known, of an annulus that is free as of the puck's."""
-        pressure: Any = self.puck.body.law
-        if "inner" in self.fixed:
-            pressure = law_of(f"annulus:{self.fixed['inner']!r}")
-        return self._motions(pressure, self.known()["gyration"], tall).highest
+        return self._motions(self.known(), tall).highest
 
-    def _motions(self, pressure: Any, gyration: float, tall: bool) -> UnitMotions:
+    def _motions(self, numbers: Mapping[str, float], tall: bool) -> UnitMotions:
+        contact: Any = self.base or self.puck.body.law
+        if "inner" in numbers:
+            contact = f"annulus:{numbers['inner']!r}"
         lifts = tall and not self.integrated
-        return unit_motions_of(self.base or pressure, gyration / self._unit, lifts)
+        return unit_motions_of(contact, numbers["gyration"] / self._unit, lifts)
 
     def steepest(self, name: str) -> float:
         """The largest friction, or J, of a puck of known height and radius: 2fh/r is its δ."""
         known = self.known()
-        if self.uses_delta or {"height", "radius", "gravity"} & {*self.free} or not known["height"]:
+        own = {"height", "radius", "gravity"} & {*self.free}
+        if own or "delta" in self.named or not known["height"]:
             return math.inf
         friction = 0.5 * self.highest(True) * known["radius"] / known["height"]
         return friction if name == "friction" else friction * known["gravity"]
+
+    def begun(self) -> dict[str, float]:
+        """Any numbers for what is free."""
+        known, values = self.known(), {}
+        middle = {"friction": 0.2, "decel": 2.0, "delta": 0.3, "height": 0.3 * self.puck.radius}
+        for name in self.free:
+            value = self.start.get(name, self.priors.get(name, (known.get(name) or 0.0,))[0])
+            low, high = self.limits(name)
+            values[name] = min(max(value or middle.get(name, value), low), high)
+        return values
+
+    def with_scales(self, decel: float, delta: float) -> dict[str, float]:
+        """The free numbers, of those that J and δ follow from, which mean these."""
+        result, others = {}, self.begun()
+        gravity = self.numbers(others)["gravity"]
+        if "friction" in others:
+            result["friction"] = decel / gravity
+        elif "decel" in others:
+            result["decel"] = decel
+        elif "gravity" in others:
+            result["gravity"] = decel / self.known()["friction"]
+        if "delta" in others:
+            result["delta"] = delta
+        elif "height" in others:
+            others.update(result)
+            radius, gravity = self.scales(others)[2], self.numbers(others)["gravity"]
+            result["height"] = 0.5 * delta * radius * gravity / decel
+        for name in result:
+            low, high = self.limits(name)
+            result[name] = min(max(result[name], low), high)
+        return result
 
     def limits(self, name: str) -> tuple[float, float]:
         """The range in which a parameter is looked for."""
@@ -337,12 +377,6 @@ class FitSpec:
         high = min(high, MOST.get(name, high))
         wanted = self.bounds.get(name, (low, high))
         return max(low, wanted[0]), min(high, wanted[1])
-
-    def plausible(self, name: str) -> float:
-        """Within about how much one would think the value to lie without the tracks."""
-        if name in ("height", "radius", *MARK):
-            return self.puck.radius
-        return self.parameters[name].plausible
 
 
 def is_annulus(puck: Puck) -> bool:

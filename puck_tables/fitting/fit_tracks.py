@@ -14,12 +14,13 @@ from typing import NamedTuple
 
 from puck_tables._core.arrays import instance
 from puck_tables.film.film import Track
-from puck_tables.fitting.checked_spec import spec_of
+from puck_tables.fitting.checked_spec import spec_of, variants_of, with_law
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
-from puck_tables.fitting.estimate import Estimate, estimate
+from puck_tables.fitting.estimate import Estimate, chi2_under, estimate
 from puck_tables.fitting.fit_result import Fit
-from puck_tables.fitting.identifiability import not_identifiable
-from puck_tables.fitting.impact_matching import Line
+from puck_tables.fitting.fit_spec import DRAGS
+from puck_tables.fitting.forecast import HeldOut, predicted, split
+from puck_tables.fitting.impact_matching import Line, SlideIndex, slides_apart
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import (
     Inputs,
@@ -31,17 +32,7 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
     refuse_unfit,
 )
-from puck_tables.fitting.misfit import misfit
-from puck_tables.fitting.model_comparison import (
-    HeldOut,
-    LawScore,
-    chi2_under,
-    compare,
-    over_speeds,
-    predicted,
-    split,
-    variants_of,
-)
+from puck_tables.fitting.misfit import LawScore, compare, misfit
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
 from puck_tables.fitting.other_minima import (
@@ -50,10 +41,10 @@ from puck_tables.fitting.other_minima import (
     judged_motion,
     without_spin,
 )
-from puck_tables.fitting.parameters import DRAGS
 from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.remarks import not_identifiable
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, drift, is_clean, runs
-from puck_tables.fitting.touches import SlideIndex, slides_apart
+from puck_tables.fitting.slowing import over_speeds
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
 
@@ -171,7 +162,7 @@ def fit(
         rows is not None,
     )  # fmt: skip
     if law is not None:
-        spec = spec.with_law(law)
+        spec = with_law(spec, law)
     inputs = Inputs.of(spec, noise, jitter, slip_speeds, between, impacts, lines, hold_out)
     films = observations_of(tracks, since, until, keep_all, checked_rows(rows), puck.radius)
     refuse_unfit(spec, films, laws)
@@ -301,7 +292,7 @@ def _reported(
     result = Fit(
         given=inputs.spec.puck, numbers=numbers, launches=launches, chi2=best.chi2,
         degrees=best.degrees, noise=best.problem.noise, jitter=best.problem.jitter,
-        noise_known=inputs.known, smooth_noise=best.problem.smooth, outliers=best.outliers,
+        noise_known=inputs.known, outliers=best.outliers,
         runs=runs(best), drift=drift(best), left_out=left_out,
         cut_off=_trimmed_ends(estimates.slides, observed.problem, left_out), blind=blind,
         astray=judged.astray, laws=laws, held_out=held_out, impacts=impacts,

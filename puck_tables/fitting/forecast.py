@@ -1,4 +1,7 @@
-"""What a film would tell, before it is made: Cramér–Rao bounds of a puck, a launch, a camera."""
+"""What is foretold: of a film before it is made, and of frames that a fit has not seen.
+
+The first are Cramér–Rao bounds of a puck, a launch, a camera.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,13 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray, instance, one_velocity, positive, real
 from puck_tables.errors import InputError
-from puck_tables.fitting.certainty import Certainty, certainty_of
+from puck_tables.fitting.certainty import Z95, Certainty, certainty_of
 from puck_tables.fitting.checked_spec import spec_of
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.identifiability import minimum_sentence, mirror_sentence
-from puck_tables.fitting.observations import FEWEST, Observations
+from puck_tables.fitting.observations import FEWEST, Mask, Observations, rests_from
 from puck_tables.fitting.other_minima import mirrored, other_minima
-from puck_tables.fitting.problem import Problem
+from puck_tables.fitting.problem import ANGLE, PLACE, Problem
+from puck_tables.fitting.remarks import minimum_sentence, mirror_sentence
 from puck_tables.io.columns import Dataset, variable
 from puck_tables.puck import Puck
 from puck_tables.result import Result
@@ -246,3 +249,111 @@ def _forecast_estimate(
     problem = problem.with_films((replace(film, place=places),))
     kept = np.ones(rows.size, bool)
     return Estimate(problem, x, kept, problem.residuals(x), slopes), certainty
+
+
+# of the frames, that may be held out: some that judge, and some to fit to
+LEAST_SHARE, LARGEST_SHARE = 0.05, 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Predictions of frames that the fit did not see.
+
+    ``tracks``: whose later part it is; ``z_place`` (n,), ``z_angle`` (m,): what was seen less what
+    was predicted, over the standard deviation of noise and prediction together; ``chance``: the
+    range in which :attr:`rms` lies by chance, 95 of 100 times, if the model is right.
+    """
+
+    tracks: tuple[str, ...]
+    z_place: FloatArray
+    z_angle: FloatArray
+    chance: tuple[float, float]
+
+    @property
+    def inside(self) -> float:
+        """The share of observations within 95 % of their prediction."""
+        every = np.abs(np.concatenate([self.z_place, self.z_angle]))
+        return float(np.mean(every < Z95))
+
+    @property
+    def rms(self) -> float:
+        """The root mean square of z; 1 where the model and its errors are right.
+
+        An outlier counts as four.
+        """
+        every = np.clip(np.concatenate([self.z_place, self.z_angle]), -4.0, 4.0)
+        return float(np.sqrt(np.mean(every**2)))
+
+
+def split(
+    films: tuple[Observations, ...], hold_out: float | tuple[str, ...], spread: float
+) -> tuple[tuple[Observations, ...], tuple[Mask, ...]]:
+    """The tracks with what is fitted of them alone, and which frames of each are predicted.
+
+    That is the last share of the moving frames of each, or the later half of tracks that are named;
+    ``spread`` m: noise of places.
+    """
+    if isinstance(hold_out, float) and not LEAST_SHARE <= hold_out <= LARGEST_SHARE:
+        raise InputError(
+            f"hold_out must be a share of the frames from {LEAST_SHARE:g} to {LARGEST_SHARE:g}, or "
+            f"names of tracks, got {hold_out:g}"
+        )
+    names = [film.name for film in films]
+    for name in () if isinstance(hold_out, float) else hold_out:
+        if name not in names:
+            raise InputError(f"hold_out names '{name}': the tracks are {', '.join(names)}")
+    kept, later = [], []
+    for film in films:
+        share = hold_out if isinstance(hold_out, float) else 0.5 * (film.name in hold_out)
+        moving = rests_from(film, spread)
+        count = film.time.size if share == 0.0 else round((1.0 - share) * moving)
+        if count < FEWEST + 2 and share > 0.0:
+            raise InputError(
+                f"{film.name} would keep {count} frames: hold out a smaller share, or other tracks"
+            )
+        after = np.arange(film.time.size) >= count
+        kept.append(film.part(~after))
+        later.append(after)
+    return tuple(kept), tuple(later)
+
+
+def predicted(
+    part: Estimate, certainty: Certainty, films: tuple[Observations, ...],
+    later: tuple[Mask, ...],
+) -> HeldOut:  # fmt: skip
+    """How far the frames held out are from their predictions."""
+    whole = part.problem.with_films(films).with_noise(part.problem.noise, part.x)
+    rows, slopes = whole.residuals_and_jacobian(part.x)
+    by_fit = np.einsum("ik,kl,il->i", slopes, certainty.covariance, slopes)
+    z, chosen = -rows / np.sqrt(1.0 + by_fit), np.zeros(rows.size, bool)
+    for film, (x, y, turn), after in zip(films, whole.each(), later, strict=True):
+        chosen[x] = after
+        chosen[y] = after & (film.straight is None)
+        chosen[turn] = after[np.isfinite(film.angles)]
+    names = tuple(film.name for film, after in zip(films, later, strict=True) if after.any())
+    noise_degrees = math.inf if certainty.degrees == math.inf else part.degrees
+    return HeldOut(
+        names, z[chosen & (whole.kinds == PLACE)], z[chosen & (whole.kinds == ANGLE)],
+        _by_chance(slopes[chosen], by_fit[chosen], certainty.covariance, noise_degrees),
+    )  # fmt: skip
+
+
+def _by_chance(
+    slopes: FloatArray, by_fit: FloatArray, covariance: FloatArray, noise_degrees: float
+) -> tuple[float, float]:
+    """Between which the rms of z lies with 95 %, over ``noise_degrees`` of its noise.
+
+    The z of one motion err together: with R their correlations Σz² is as (n/ν) χ² of
+    ν = n²/tr R² degrees (Satterthwaite), over the noise that was told as F.
+    """
+    from scipy.special import chdtri, fdtri
+
+    weight = 1.0 / (1.0 + by_fit)
+    shared = covariance @ (slopes.T * weight) @ slopes
+    square = float(np.sum(weight**2 * (1.0 + 2.0 * by_fit)) + np.sum(shared * shared.T))
+    degrees = by_fit.size**2 / square
+    if noise_degrees == math.inf:
+        ends = [chdtri(degrees, tail) / degrees for tail in (0.975, 0.025)]
+    else:
+        ends = [fdtri(degrees, noise_degrees, share) for share in (0.025, 0.975)]
+    return math.sqrt(ends[0]), math.sqrt(ends[1])

@@ -21,7 +21,7 @@ Floor friction has no impulse.  The moment is that at which the rims touch.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -175,6 +175,25 @@ def _by_speed(
     return result, slopes, differ[len(steps) :]
 
 
+def marked(path: FloatArray, numbers: Mapping[str, float]) -> FloatArray:
+    """Places and angles (3, n) of what is tracked on a body with such ones."""
+    x, y = numbers["mark_x"], numbers["mark_y"]
+    if not x and not y:
+        return path
+    cosine, sine = np.cos(path[2]), np.sin(path[2])
+    return np.stack([path[0] + cosine * x - sine * y, path[1] + sine * x + cosine * y, path[2]])
+
+
+def turned(launch: FloatArray, states: FloatArray, slopes: FloatArray) -> FloatArray:
+    """How states (6, n) change with the angle at which a body that is not round is launched."""
+    out: FloatArray = -slopes[:, :, [VX, VY]] @ np.array([-launch[3], launch[2]])
+    out[:, [0, 1]] += np.stack([launch[1] - states[1], states[0] - launch[0]], axis=1)
+    out[:, [3, 4]] += np.stack([-states[4], states[3]], axis=1)
+    return out.T.copy()
+
+
+STEP = 1e-6  # of a number: of differences, forward and central
+LEAST_NUMBER = 1e-2  # that a number is taken to be at least, in its unit, for a step
 AS_LAUNCH = [0, 1, 3, 4, 5, 2]  # rows of a state
 _NEWTON, _EXACT, _TOUCHES = 12, 1e-10, 1e-6  # of the radius
 
@@ -305,3 +324,35 @@ def gap_of(
         toward = math.atan2(ny, nx)
         gap, vx, vy, spin = apart - 2.0 * radius, vx - wx, vy - wy, spin + other
     return gap, *along_normal(vx, vy, radius * spin, nx, ny), toward
+
+
+def slopes_after(
+    impact: ImpactState, before: Sequence[tuple[FloatArray, FloatArray]], x: FloatArray,
+    at: Callable[[FloatArray], tuple[float, float, Rims, WallLine | None]],
+) -> list[FloatArray]:  # fmt: skip
+    """The derivatives (7, m) of the slides after an impact to unknowns (m,).
+
+    ``before``: those of the states there (6, m), and by time (6,); ``at``: radius m, radius of
+    gyration over it, rims and wall under such unknowns.
+    """
+    slopes = [np.zeros((7, x.size)) for _ in before]
+
+    def moved(k: int, by: float, later: float) -> list[FloatArray]:
+        """States at the impact where an unknown is changed."""
+        every = zip(impact.before, before, strict=True)
+        return [state + by * (slope[:, k] + speed * later) for state, (slope, speed) in every]
+
+    for k in range(x.size):
+        step = STEP * max(abs(float(x[k])), LEAST_NUMBER)
+        sides = [(by, *at(x + by * (np.arange(x.size) == k))) for by in (step, -step)]
+        later = 0.0
+        if impact.touches:
+            one, two = (gap_of(moved(k, by, 0.0), wall, radius) for by, radius, _, _, wall in sides)
+            approach = 0.5 * (one[1] + two[1])
+            later = (one[0] - two[0]) / (2.0 * step * approach) if approach > 0.0 else 0.0
+        ends = [after_impact(moved(k, by, later), radius, gyration, rims, wall)[0]
+                for by, radius, gyration, rims, wall in sides]  # fmt: skip
+        # a state holds x, y, vx, vy, spin, angle as a launch does
+        for out, first, second in zip(slopes, *ends, strict=True):
+            out[0, k], out[1:, k] = later, (first - second) / (2.0 * step)
+    return slopes

@@ -1,254 +1,214 @@
-"""The estimate of tracks, from starts that the tracks themselves suggest.
+"""The estimate of tracks, from starts of their own, without frames that are no free motion.
 
-Frames at their ends that are no free motion, a hand before, a grip or a wall after, are left out.
-
-Where more than one friction moves a puck starts come from what slows and turns it.  A polynomial of
-time through places and angles in one piece tells velocity v and spin ω.  With these places and
-angles are linear in the launch, in friction, drags and a push, for a flat puck
-
-    Δx = v₀ t + ∬ (−f g I_a v/|v| − c v − k |v| v + p) dt² ,
-    Δφ = ω₀ t + ∬ (−f g (r/k_g²) I_d sgn ω − (c + s) ω) dt² ,
-
-with the integrals I_a, I_d of the base over the direction of slip (uniform pressure).  Over a belt
-v is relative to it; f of a named law counts at the slip √(v² + (rω)²).  What is not linear, the
-speed of a law or a belt, is tried out.  No motion near the truth is needed, and angles stay in one
-piece.
+A free puck changes its velocity smoothly, whatever the floor is: a hand that lets go, a grip or a
+wall makes velocity or acceleration jump, and nothing but a push makes a puck on a level floor
+faster.  So frames before and after a moment are laid beside two parabolas, and beside one
+polynomial with as many coefficients: where the two are far nearer something happened there.  Frames
+at the ends before a hand lets go, or after a grip or a wall, are left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from puck_tables._core.arrays import FloatArray
-from puck_tables.contact import closed_form
 from puck_tables.errors import InputError
 from puck_tables.fitting.certainty import certainty_at, certainty_of
-from puck_tables.fitting.estimate import Estimate, estimate, only_outliers
-from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.least_squares import FROM_SLOWING, ROBUST, multi_start
-from puck_tables.fitting.observations import GIVE_NOISE, Observations, rests_from, turning_of
-from puck_tables.fitting.parameters import DRAGS, NOTHING
-from puck_tables.fitting.problem import ANGLE, Problem
+from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, only_outliers
+from puck_tables.fitting.fit_spec import DRAGS, NOTHING
+from puck_tables.fitting.observations import (
+    FEWEST,
+    GIVE_NOISE,
+    Mask,
+    Observations,
+    noise_of,
+    rests_from,
+)
+from puck_tables.fitting.problem import ANGLE, UNSEEN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, NOISY, is_clean
-from puck_tables.fitting.speed_motion import shape
-from puck_tables.fitting.starts import minima_of, numbers_with
-from puck_tables.fitting.touches import trimmed, without_ends
-from puck_tables.fitting.unknowns import NumbersOf
+from puck_tables.fitting.slowing import nearest_start, starts_from_slowing
+from puck_tables.fitting.starts import minima_of
 
-_DEGREE = 7  # of the polynomial: motions that slow are smooth
-_FAR, _ROUNDS = 4.0, 4  # usual deviations of a frame that counts; so often others are left out
-_MOMENTS = 60  # at which polynomials stand for a track
-_LEAST = 1e-3  # of the friction that slows alone
-_KEPT = 5  # trials that begin a fit
-_FRICTIONS = ("friction", "friction_rest")
-_LINEAR = ("friction", "friction_rest", "drag", "air", "spin_drag", "slope_x", "slope_y")
-# of the base, by radius and direction: half of it, the other is its mirror image
-_PARTS = np.outer(
-    np.sqrt((np.arange(6) + 0.5) / 6.0), np.exp(1j * np.pi * ((np.arange(16) + 0.5) / 16.0 - 0.5))
-).ravel()  # fmt: skip
-_LAW_SPEEDS = tuple(np.geomspace(0.02, 0.9, 12).tolist())  # of the fastest slip
-_BELT_SPEEDS, _BELT_DIRECTIONS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0), 16  # of the fastest speed
+FAR = 25.0  # of χ²: by so much nearer, and by as much for each 1 of it that is left
+_REACHES = (6, 12, 24, 48)  # frames to either side
+_FEWEST_NEARBY, _CURVED = 3, 5  # frames of a side, and those that tell a curvature
+_SPIKE = 6.0  # standard deviations of a frame that is no motion
+_JUMPS, _PARTS, _FASTER = 5.0, 4, 1.1  # standard errors; parts of a track; times a speed before
 
 
-class _Moments(NamedTuple):
-    """A track at moments (m,) s: x, y and the way of the rim (3, m) m, and their speeds (3, m)."""
+def first_touch(film: Observations, first: int, last: int) -> int | None:
+    """The frame from ``first`` to ``last`` before which the motion jumps most; None if none does.
 
-    at: FloatArray
-    place: FloatArray
-    speed: FloatArray
-
-    @property
-    def line(self) -> FloatArray:
-        """What a launch does to each of the places (m, 2), by where and how fast it begins."""
-        return np.stack([np.ones(self.at.size), self.at], axis=1)
-
-
-def starts_from_slowing(problem: Problem) -> list[tuple[Problem, FloatArray]]:
-    """Starts of a problem of tracks with angles, or along lines; none where none can be followed.
-
-    Of those of which friction, drags, a slope, a belt or the numbers of a law are found; with its
-    unknowns comes the same problem with the angles of each track in one piece.  The last start is
-    that of one friction and nothing else, which leaves no more in the end than that alone would.
-
-    >>> from puck_tables.film.film import Track
-    >>> from puck_tables.fitting.checked_spec import spec_of
-    >>> from puck_tables.fitting.observations import observations_in
-    >>> from puck_tables.puck import Puck
-    >>> t = 0.01 * np.arange(90)
-    >>> track = Track(t, np.stack([2.0 * t - 0.49 * t**2, 0.0 * t], axis=1), 0.0 * t)
-    >>> spec = spec_of(Puck(0.03, gravity=9.8), ["friction", "air"], {}, {}, {}, {})
-    >>> starts = starts_from_slowing(Problem(spec, (observations_in(track),), (1e-4, 1e-3)))
-    >>> starts[0][1][:2].round(4)
-    array([0.1, 0. ])
+    >>> t = np.arange(60) / 60.0
+    >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (60, 2))
+    >>> impact = np.stack([np.where(t < 0.5, t, 0.75 - 0.5 * t), 0.0 * t], axis=1) + noise
+    >>> slid = np.stack([t - 0.4 * t * t, 0.0 * t], axis=1) + noise
+    >>> films = [Observations("a", 0.0, t, place, None, np.arange(60)) for place in (impact, slid)]
+    >>> [first_touch(film, 2, 57) for film in films]
+    [31, None]
     """
-    films, whole = [], []
-    radius = problem.spec.known()["radius"]
-    for film in problem.films:
-        turning = turning_of(film)
-        followed = film.straight is not None if film.angle is None else turning and turning.sure
-        if not followed:
-            return []
-        angle = None if turning is None else turning.angle
-        whole.append(angle)
-        films.append(_moments(film, angle, rests_from(film, problem.noise[0]), radius))
-    spec, known = problem.spec, problem.spec.known()
-    alone = _linear_fit(replace(spec.plain(), free=("friction",)), films, {}, 0.0)
-    one = alone.numbers["friction"]
-    tried = [_linear_fit(spec, films, trial, _LEAST * one) for trial in _trials(problem, films)]
-    tried = sorted(tried, key=lambda one: one.left)[:_KEPT]
-    law_speed = tried[0].numbers.get("law_speed", 0.0)
-    alone.numbers.update({**NOTHING, "friction_rest": one, "law_speed": law_speed})
-    moved = replace(problem, whole=tuple(whole), weights=())
-    starts = []
-    for numbers, launches, _ in (*tried, alone):
-        begun = {**known, "delta": 0.1, **numbers, **spec.start}
-        begun["decel"] = begun["friction"] * known["gravity"]
-        x = moved.unknowns({name: begun[name] for name in spec.free}, launches)
-        starts.append((moved, np.clip(x, *moved.limits)))
-    return starts
-
-
-def nearest_start(
-    problem: Problem, starts: list[tuple[Problem, FloatArray]]
-) -> tuple[Problem, FloatArray]:
-    """That of the starts which leads to the deepest minimum, there; refused where there are none.
-
-    With its unknowns comes the problem with the angles of each track in one piece.
-    """
-    if not starts:
-        raise InputError(
-            f"{' and '.join(problem.spec.integrated)} are found of tracks with angles that can be "
-            "followed from frame to frame, or along a line: film a mark on the puck"
-        )
-    return starts[0][0], multi_start(starts, FROM_SLOWING, ROBUST)[0][0]
-
-
-def _trials(problem: Problem, films: list[_Moments]) -> Iterator[NumbersOf]:
-    """Values of what is not linear."""
-    spec = problem.spec
-    fastest = max(float(np.linalg.norm(one.speed, axis=0).max()) for one in films)
-    if "law_speed" in spec.free:
-        yield from ({"law_speed": share * fastest} for share in _LAW_SPEEDS)
-    elif {"belt_x", "belt_y"} & {*spec.free}:
-        angles = 2.0 * np.pi * np.arange(_BELT_DIRECTIONS) / _BELT_DIRECTIONS
-        ends = [one.speed[:2, -1] for one in films]
-        tried = [share * fastest * np.array([np.cos(a), np.sin(a)])
-                 for share in _BELT_SPEEDS for a in angles]  # fmt: skip
-        for belt in (*ends, *tried):
-            yield {"belt_x": float(belt[0]), "belt_y": float(belt[1])}
-    else:
-        yield {}
-
-
-class _LinearFit(NamedTuple):
-    """Numbers of the puck, launches (tracks, 6), and the squares that are left, m²."""
-
-    numbers: NumbersOf
-    launches: FloatArray
-    left: float
-
-
-def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: float) -> _LinearFit:
-    """What linear least squares find with the numbers tried; ``least``: of a friction."""
-    from scipy.optimize import lsq_linear
-
-    known = {**spec.known(), **trial}
-    names = [n for n in _LINEAR if n in spec.free or (n == "friction" and "decel" in spec.free)]
-    at = [_LINEAR.index(name) for name in names]
-    fixed = np.array([known.get(name, 0.0) for name in _LINEAR])
-    fixed[at] = 0.0
-    if spec.law == "":
-        fixed[_LINEAR.index("friction_rest")] = 0.0
-    columns = [_columns(one, spec.law, known) for one in films]
-    rest = [one.place.T - column @ fixed for one, column in zip(films, columns, strict=True)]
-    lines = [np.linalg.qr(film.line)[0] for film in films]
-    every, seen = (  # what no launch can do of places
-        np.concatenate([
-            (one - np.tensordot(line @ line.T, one, 1)).reshape(-1, *one.shape[2:])
-            for line, one in zip(lines, rows, strict=True)
-        ]) for rows in ([column[..., at] for column in columns], rest)
-    )  # fmt: skip
-    solution, left = np.zeros(len(at)), float(seen @ seen)
-    if names:
-        size = np.maximum(np.linalg.norm(every, axis=0), 1e-300)
-        low, high = np.array([spec.limits(name) for name in names]).T
-        low = np.maximum(low, [least if name in _FRICTIONS else -np.inf for name in names])
-        result = lsq_linear(every / size, seen, (low * size, high * size), method="bvls")
-        solution, left = result.x / size, 2.0 * float(result.cost)
-    radius, launches = spec.known()["radius"], []
-    for film, column, one in zip(films, columns, rest, strict=True):
-        begun, speed = np.linalg.lstsq(film.line, one - column[..., at] @ solution, rcond=None)[0]
-        launches.append([*begun[:2], *speed[:2], speed[2] / radius, begun[2] / radius])
-    numbers = dict(zip(names, solution.tolist(), strict=True))
-    return _LinearFit({**trial, **numbers}, np.array(launches), left)
-
-
-def _moments(
-    film: Observations, angle: FloatArray | None, moving: int, radius: float
-) -> _Moments:  # fmt: skip
-    """A track along polynomials of time, without strays."""
-    t, smooth = film.time[:moving], []
-    at = np.linspace(0.0, float(t[-1]), _MOMENTS)
-    turned = np.zeros(moving) if angle is None else angle[:moving]
-    for rows in (*film.place[:moving].T, turned):
-        kept = np.isfinite(rows)
-        for _ in range(_ROUNDS):
-            degree = min(_DEGREE, max(int(kept.sum()) // 4, 2))
-            one = Chebyshev.fit(t[kept], rows[kept], degree, [0.0, float(t[-1])])
-            off = np.abs(rows - one(t))
-            again = np.isfinite(rows) & (off <= _FAR * 1.48 * max(np.nanmedian(off), 1e-12))
-            if np.array_equal(again, kept) or again.sum() < 2 * degree:
+    noise = noise_of([film])[0]
+    if not noise > 0.0:
+        return None
+    steady = ~_spikes(film.place, noise)
+    rests = rests_from(film, noise)
+    best, where = 0.0, None
+    for middle in range(max(first, _FEWEST_NEARBY), min(last, film.time.size - _FEWEST_NEARBY) + 1):
+        for reach in _REACHES:
+            gain = _gain(film, noise, steady, middle, reach, rests)
+            if gain > best:
+                best, where = gain, middle
+            if min(middle, film.time.size - middle) <= reach:
                 break
-            kept = again
-        smooth.append(one)
-    speed = np.stack([one.deriv()(at) for one in smooth])
-    size = np.array([[1.0], [1.0], [radius]])
-    return _Moments(at, size * np.stack([one(at) for one in smooth]), size * speed)
+    return where
 
 
-def _columns(film: _Moments, law: str, known: NumbersOf) -> FloatArray:
-    """What each of the linear numbers does to x, y and the way of the rim (m, 3, 7)."""
-    belt = np.array([known.get("belt_x", 0.0), known.get("belt_y", 0.0)])
-    velocity, turning = film.speed[:2] - belt[:, None], film.speed[2]
-    v, rim, g = np.hypot(*velocity), np.abs(turning), known["gravity"]
-    slip = np.maximum(np.hypot(v, rim), 1e-300)
-    a, _, d = closed_form.shape_integrals(
-        np.minimum(v, rim) / np.maximum(np.maximum(v, rim), 1e-300), (rim > v).astype(np.float64)
-    )
-    whole = np.stack([v / slip * a, rim / slip * d])
-    part = np.zeros_like(whole) if law == "" else _of_law(v, rim, law, known["law_speed"])
-    directions = np.stack([*(velocity / np.maximum(v, 1e-300)), np.sign(turning)])
-    directions[2] /= known["gyration"] ** 2
-    braking, resting = (-g * one[[0, 0, 1]] * directions for one in (whole - part, part))
-    none = np.zeros(v.size)
-    rates = np.stack([
-        braking, resting,
-        -np.stack([*velocity, turning]), -np.stack([*(v * velocity), none]),
-        -np.stack([none, none, turning]),
-        np.stack([none + g, none, none]), np.stack([none, none + g, none]),
-    ], axis=2)  # fmt: skip
-    for _ in range(2):
-        steps = np.diff(film.at)[:, None] * 0.5 * (rates[:, 1:] + rates[:, :-1])
-        rates = np.concatenate([np.zeros((3, 1, 7)), np.cumsum(steps, axis=1)], axis=1)
-    return np.swapaxes(rates, 0, 1)
+def pushed(film: Observations, start: int, stop: int) -> bool:
+    """Whether the puck gets faster between two frames.
 
-
-def _of_law(v: FloatArray, rim: FloatArray, law: str, speed: float) -> FloatArray:
-    """Force and torque of φ of a law over the base, at speeds (m,) of its middle and rim, (2, m).
-
-    Over f N and f N r; summed over parts of the base of equal size.
+    >>> t = np.arange(40) / 40.0
+    >>> noise = np.random.default_rng(1).normal(0.0, 1e-4, (40, 2))
+    >>> place = np.stack([t * t, 0.0 * t], axis=1) + noise
+    >>> film = Observations("a", 0.0, t, place, None, np.arange(40))
+    >>> pushed(film, 0, 40), pushed(film, 0, 6)
+    (True, False)
     """
-    along, aside = _PARTS.real, _PARTS.imag
-    ahead, across = v[:, None] - rim[:, None] * aside, rim[:, None] * along
-    slip = np.maximum(np.hypot(ahead, across), 1e-300)
-    pull = shape(law, slip / speed) / slip
-    pulls = np.stack([pull * ahead, pull * (across * along - ahead * aside)])
-    return np.asarray(pulls.mean(axis=2))
+    width = (stop - start) // _PARTS
+    noise = noise_of([film])[0]
+    if width < _FEWEST_NEARBY or not noise > 0.0:
+        return False
+    slowest, error = math.inf, noise * math.sqrt(12.0 / width**3) / film.usual_step
+    for at in range(start, start + _PARTS * width, width):
+        part = slice(at, at + width)
+        speed = math.hypot(*np.polyfit(film.time[part], film.place[part], 1)[0])
+        if speed > max(slowest + _JUMPS * error, _FASTER * slowest):
+            return True
+        slowest = min(slowest, speed)
+    return False
+
+
+def _gain(
+    film: Observations, noise: float, steady: Mask, middle: int, reach: int,
+    rests: int,
+) -> float:  # fmt: skip
+    """By how much two parabolas are nearer than one polynomial, 0 where that is by chance.
+
+    ``rests``: the frame from which on the puck does.  It comes to rest by itself, where its
+    acceleration jumps: before that what comes after does not count, there the velocity has to jump.
+    """
+    stops = middle >= rests - _FEWEST_NEARBY
+    end = middle + reach if stops else min(middle + reach, rests)
+    ends = (max(0, middle - reach), middle), (middle, end)
+    sides = [np.flatnonzero(steady[start:stop]) + start for start, stop in ends]
+    if min(side.size for side in sides) < _FEWEST_NEARBY:
+        return 0.0
+    time = film.time - film.time[middle]
+    left, count, slopes = 0.0, 0, []
+    for side in sides:
+        order = 2 if side.size >= _CURVED else 1
+        result, deviations = _near(time[side], film.place[side], order)
+        left, count = left + deviations, count + order + 1
+        slopes.append((result[1], 192.0 if order == 2 else 12.0, side.size, result[order]))
+    both = np.concatenate(sides)
+    one = _near(time[both], film.place[both], count - 1)[1]
+    left, one = left / noise**2, one / noise**2
+    gain = one - left
+    if gain < FAR * max(1.0, left / max(2 * (both.size - count), 1)):
+        return 0.0
+    if stops:
+        jump = math.hypot(*(slopes[1][0] - slopes[0][0]))
+        error = math.sqrt(sum(spread / size**3 for _, spread, size, _ in slopes)) * noise
+        slowing = 2.0 * math.hypot(*slopes[0][3])
+        hidden = _FEWEST_NEARBY * film.usual_step
+        hidden += 2.0 * math.sqrt(10.0 * noise / max(slowing, 1e-12))
+        if jump < max(_JUMPS * error / film.usual_step, slowing * hidden):
+            return 0.0
+    return gain
+
+
+def _near(time: FloatArray, place: FloatArray, order: int) -> tuple[FloatArray, float]:
+    """Coefficients of the nearest polynomial, and the squares that are left."""
+    scale = float(np.abs(time).max())
+    powers = np.vander(time / scale, order + 1, increasing=True)
+    result = np.linalg.lstsq(powers, place, rcond=None)[0]
+    left = place - powers @ result
+    return result / scale ** np.arange(order + 1.0)[:, None], float((left**2).sum())
+
+
+def _spikes(place: FloatArray, noise: float) -> Mask:
+    """Frames that lie far from the cubic through the two before and the two after (n,)."""
+    deviations = np.zeros(len(place))
+    inner = place[2:-2] - (4.0 * (place[1:-3] + place[3:-1]) - place[:-4] - place[4:]) / 6.0
+    deviations[2:-2] = np.hypot(*inner.T) / (1.4 * noise)
+    around = np.stack([np.roll(deviations, k) for k in (-2, -1, 1, 2)]).max(axis=0)
+    return np.asarray((deviations > _SPIKE) & (deviations >= around))
+
+
+_FEWEST_OUT = 3  # frames at an end that are more than single outliers
+_NEARBY = 0.1  # of the frames that are left, at most
+_SMALLER = 0.45  # of the frames: a hand or what a wall did
+_SLACK = 3  # frames
+_MOSTLY = 0.7  # of them are outliers
+
+
+def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observations, ...]:
+    """The tracks without what lies at their ends and is not of the motion; ``uncut``: with all.
+
+    What is off there is left out where something touches the puck (:func:`first_touch`); else it is
+    the model that is wrong.  A hand that lets go slows otherwise by about J, and is off by as much
+    as an outlier only the time √(2 · 4σ/J) before: so long beside what is foreign is left out, too.
+    """
+    films, problem = [], result.problem
+    decel = problem.spec.scales(problem.numbers_at(result.x))[0]
+    hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
+    for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
+        out = ~result.kept[x] & (problem.kinds[x] != UNSEEN)
+        ends = [_foreign(out), _foreign(out[::-1])]
+        close = math.ceil(min(hidden / film.usual_step, _NEARBY * (out.size - sum(ends))))
+        for n, before in enumerate(ends):
+            edge = before if n == 0 else out.size - before
+            at = int(np.searchsorted(whole.frame, film.frame[min(edge, out.size - 1)]))
+            at += edge == out.size
+            ends[n] = before + close if before and _ends(whole, at, close, n == 0) else 0
+        inner = np.arange(film.time.size)
+        chosen = (inner >= ends[0]) & (inner < out.size - ends[1])
+        same = bool(chosen.all()) or chosen.sum() < FEWEST + 2
+        films.append(film if same else film.part(chosen))
+    same = all(a is b for a, b in zip(films, problem.films, strict=True))
+    return problem.films if same else tuple(films)
+
+
+def _ends(whole: Observations, at: int, close: int, first: bool) -> bool:
+    """Whether the free motion begins, or ends, about a frame since something touches the puck."""
+    rests = rests_from(whole, noise_of([whole])[0])
+    if not whole.cuttable[0 if first else 1] or (first and at >= rests - FEWEST):
+        return False
+    if first_touch(whole, at - close - _SLACK, at + close + _SLACK) is not None:
+        return True
+    count = whole.time.size
+    foreign, free = ((0, at), (at, count)) if first else ((at, count), (0, at))
+    return pushed(whole, *foreign) and not pushed(whole, *free)
+
+
+def without_ends(film: Observations) -> list[Observations]:
+    """A track without what lies before or after a touch, where that is the smaller part."""
+    order, parts = np.arange(film.time.size), []
+    count = round(_SMALLER * order.size)
+    for end, ends in enumerate(((0, count), (order.size - count, order.size))):
+        at = first_touch(film, *ends) if film.cuttable[end] else None
+        if at is not None:
+            parts.append(film.part((order >= at) != bool(end)))
+    return [part for part in parts if part.time.size >= FEWEST + 2]
+
+
+def _foreign(out: Mask) -> int:
+    """How many frames at the beginning are mostly outliers."""
+    sizes = np.arange(1, out.size + 1)
+    mostly = out & (np.cumsum(out) >= _MOSTLY * sizes) & (sizes >= _FEWEST_OUT)
+    return int(sizes[mostly].max(initial=0))
 
 
 _LIFTS = 0.995  # δ from which on a uniform puck is fitted with part of its base lifted
@@ -329,7 +289,7 @@ def _integrated(problem: Problem) -> Estimate:
     decel, delta, _ = plain.problem.spec.scales(numbers)
     speed = float(np.hypot(*launches[:, 2:4].T).max())
     for share in _SHARES_OF_AIR:  # of the slowing at half the speed that is by air
-        less = numbers_with(spec, (1.0 - share) * decel, (1.0 - share) * delta)
+        less = spec.with_scales((1.0 - share) * decel, (1.0 - share) * delta)
         air = 4.0 * share * decel / max(speed, 1e-9) ** 2
         x = problem.unknowns({**NOTHING, **numbers, **less, "air": air}, launches)
         begun.append((problem, np.clip(x, *problem.limits)))
@@ -392,7 +352,8 @@ def _joint_start(
     weights, sums = np.zeros((shared, shared)), np.zeros(shared)
     for part, (x, *_) in zip(parts, minima, strict=True):
         if shared and not part.rests[0]:  # which tells nothing of what moves
-            spread = certainty_of(part.jacobian(x), part.plausible(x)).covariance
+            _, slopes = part.residuals_and_jacobian(x)
+            spread = certainty_of(slopes, part.plausible(x)).covariance
             weight = np.linalg.pinv(spread[:shared, :shared])
             weights += weight
             sums += weight @ x[:shared]

@@ -14,14 +14,13 @@ from puck_tables.contact.speed_law import KINDS
 from puck_tables.errors import InputError
 from puck_tables.film.film import Track, marks_of_one
 from puck_tables.fitting.certainty import Certainty
+from puck_tables.fitting.checked_spec import over, refuse_integrated
 from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.impact_matching import Line
+from puck_tables.fitting.fit_spec import MARK, MOST_NODES, FitSpec
+from puck_tables.fitting.impact_matching import Line, turns
 from puck_tables.fitting.observations import Observations, noise_of, observations_in, rests_from
-from puck_tables.fitting.parameters import MARK, MOST_NODES
 from puck_tables.fitting.problem import Known
 from puck_tables.fitting.starts import slowing_of
-from puck_tables.fitting.touches import turns
 
 MOST_FRAMES = 100_000  # of all tracks: memory and time of a fit grow with them
 FIND = "find"
@@ -60,9 +59,9 @@ class Inputs:
         """Checked."""
         checked = checked_speeds(speeds, between)
         if checked:
-            spec.over(checked, between)
+            over(spec, checked, between)
         if spec.integrated:
-            spec.refuse_integrated()
+            refuse_integrated(spec)
         if spec.integrated and (impacts or lines):
             raise InputError(
                 f"{' and '.join(spec.integrated)} cannot be found beside impacts: leave one of "
@@ -142,7 +141,7 @@ def refuse_unfit(spec: FitSpec, films: Sequence[Observations], laws: Any) -> Non
             "the unit (--radius 38mm, --base box:20cmx10cm), or say that of the track"
         )
     for film in (film for film in films if film.angle is None):
-        if {*MARK} & {*spec.free, *spec.fixed}:
+        if {*MARK} & spec.named:
             raise InputError(
                 f"{film.name} has no angles, which a mark off the centre (mark_x, mark_y) needs: "
                 "give them (two marks will do)"
@@ -195,7 +194,7 @@ def _refuse_twice(one: Observations, other: Observations) -> None:
 def refuse_tipping(spec: FitSpec, films: tuple[Observations, ...], noise: float) -> None:
     """Refuse a height at which a puck that slows down as these would tip over."""
     known = spec.known()
-    if spec.uses_delta or "height" in spec.free or known["height"] == 0.0:
+    if "delta" in spec.named or "height" in spec.free or known["height"] == 0.0:
         return
     decel = known["decel"] if "decel" in spec.fixed else known["friction"] * known["gravity"]
     if {"decel", "friction", "gravity"} & {*spec.free}:

@@ -1,12 +1,17 @@
-"""Why tracks do not fit: angles, radius, drag, air, a slope, or a friction over the slip speed.
+"""Why tracks do not fit, and which laws fit them best.
 
-Each is tried out: where residuals then are far smaller, about as noise is, that is told.
+Laws are compared by fits with the same unknowns to the same frames.  The noise is that of the law
+that leaves least (or the one given), and a residual beyond four standard deviations counts as four,
+so that no law gains by calling frames outliers.
+
+Where a fit misfits, angles or a radius read otherwise, drag, air, a slope, or a friction over the
+slip speed are tried out: where residuals then are far smaller, about as noise is, that is told.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -15,17 +20,115 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.fitting.estimate import Estimate
-from puck_tables.fitting.fit_spec import FitSpec
-from puck_tables.fitting.initial_estimate import (
-    initial_estimate,
-    nearest_start,
-    starts_from_slowing,
-)
-from puck_tables.fitting.model_comparison import FLOORS, tried
-from puck_tables.fitting.parameters import INTEGRATED, MARK, NODES, NOTHING
+from puck_tables.fitting.checked_spec import FLOORS
+from puck_tables.fitting.estimate import Estimate, chi2_under, estimate
+from puck_tables.fitting.fit_spec import INTEGRATED, MARK, NODES, NOTHING, FitSpec
+from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.problem import ROUGH, TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
+from puck_tables.fitting.slowing import (
+    ALL_KNOWN,
+    nearest_start,
+    on_a_floor,
+    starts_from_slowing,
+    tried,
+)
+
+_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted further
+
+
+class LawScore(NamedTuple):
+    """One law.
+
+    ``chi2``: squares of residuals under the common noise; ``unknowns``: how many were found;
+    ``weight``: its share of the Akaike weights exp(−½(χ² + 2 unknowns)); ``numbers``: what was
+    found of the puck.
+    """
+
+    name: str
+    chi2: float
+    unknowns: int
+    weight: float
+    numbers: dict[str, float]
+
+
+def compare(problem: Problem, variants: Mapping[str, FitSpec]) -> tuple[LawScore, ...]:
+    """The laws named, best first, of the frames of a problem; those that contend are fitted on.
+
+    Frames that another law leaves out at the ends may be those that tell.
+    """
+    fits, noise, known = dict[str, Estimate](), problem.noise, problem.known
+    for name, question in variants.items():
+        same = replace(problem, spec=question, known=known._replace(jitter=True))
+        try:
+            fits[name] = (
+                on_a_floor(same) if question.integrated else initial_estimate(same, refit=False)
+            )
+        except InputError:
+            if "+" not in name:  # no such floor leads to such a track
+                raise
+    place, angle = (
+        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in fits.values())
+        for kind in range(2)
+    )
+    unknowns = np.array([one.x.size for one in fits.values()])
+    chi2 = np.array([chi2_under(one, (place, angle)) for one in fits.values()])
+    score = chi2 + 2.0 * unknowns
+    near = score < score.min() + _CONTENDS
+    for k, (name, before) in enumerate(fits.items()):
+        if near[k] and not (known.place and known.angle):
+            same = before.problem.with_noise((place, angle), before.x)
+            one = estimate(replace(same, known=ALL_KNOWN), before.x)
+            if (less := chi2_under(one, (place, angle))) < chi2[k]:
+                fits[name], chi2[k] = one, less
+    score = chi2 + 2.0 * unknowns
+    weight = np.exp(-0.5 * (score - score.min()))
+    weight /= weight.sum()
+    every = [*zip(fits.items(), *(one.tolist() for one in (chi2, unknowns, weight)), strict=True)]
+    return tuple(
+        LawScore(name, c, m, w, one.problem.numbers_at(one.x))
+        for (name, one), c, m, w in (every[k] for k in np.argsort(score, kind="stable"))
+    )
+
+
+_EACH = 7.0  # of χ², that each more number has to earn: ln n of a film of some hundred frames
+_AS_RIGHT = 10.0  # of that: floors that the film does not tell apart
+
+
+def verdict(laws: tuple[LawScore, ...]) -> str:
+    """Which of the laws compared a film supports, from the simplest up, in a sentence.
+
+    A law counts by χ² + 7 for each number.
+
+    >>> one = LawScore("uniform", 930.0, 8, 0.0, {})
+    >>> verdict((one._replace(name="uniform+air", chi2=700.0, unknowns=9), one))
+    'uniform+air is what the film supports: with 1 more number than uniform it leaves 230 less of \
+chi^2, and no other law leaves less for its numbers.'
+    """
+    if len(laws) < 2:
+        return ""
+    ranked = sorted(laws, key=lambda one: one.chi2 + _EACH * one.unknowns)
+    simplest = min(laws, key=lambda one: (one.unknowns, one.chi2))
+    best = ranked[0]
+    least = best.chi2 + _EACH * best.unknowns
+    alike = [one.name for one in ranked[1:] if one.chi2 + _EACH * one.unknowns < least + _AS_RIGHT]
+    if best is simplest:
+        said = (
+            f"{best.name} is enough: no law with more numbers leaves so much less of chi^2 that "
+            "they are worth it"
+        )
+    else:
+        more = best.unknowns - simplest.unknowns
+        words = f"{more} more number{'' if more == 1 else 's'} than"
+        said = (
+            f"{best.name} is what the film supports: with {words} {simplest.name} it leaves "
+            f"{simplest.chi2 - best.chi2:.4g} less of chi^2, and no other law leaves less for its "
+            "numbers"
+        )
+    if alike:
+        said += f"; {', '.join(alike)} may be as right: the film does not tell"
+    return f"{said}."
+
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR, _LEAST = 0.01, 1e-3  # of the radius: it is not another one; units are not mixed up by more
@@ -35,17 +138,16 @@ _ROUNDING = 1e-12  # m or rad: of a film that was computed less tells nothing
 _FIRST = 2  # readings are told that are no floors, if they are among so many
 _DEGREE = math.pi / 180.0  # rad
 _AGAIN = "if angles came again after {} a turn, as those of {} do: numpy.unwrap(angle, period=pi{})"
-_ANGLES: tuple[tuple[str, float, Callable[[FloatArray], FloatArray]], ...] = (  # their scale
+_Read = Callable[[FloatArray], FloatArray]
+_ANGLES: tuple[tuple[str, float, _Read], ...] = (  # their scale; the last is of a base
     ("if angles, or y, grew the other way: negate one of them in the file", 1.0, np.negative),
     ("if angles were in degrees, not in rad: say their unit", _DEGREE, np.radians),
     ("if angles were in rad, not in degrees: say their unit", 1.0 / _DEGREE, np.degrees),
     (_AGAIN.format("half", "a bar", ""), 1.0, lambda angle: _unwrapped(angle, math.pi)),
     (_AGAIN.format("a quarter of", "a square", "/2"), 1.0,
      lambda angle: _unwrapped(angle, 0.5 * math.pi)),
-)  # fmt: skip
-_ACROSS: tuple[str, float, Callable[[FloatArray], FloatArray]] = (
-    "if angles were those of the y axis of the base: add a quarter turn, or swap its sides",
-    1.0, lambda angle: angle + 0.5 * math.pi,
+    ("if angles were those of the y axis of the base: add a quarter turn, or swap its sides", 1.0,
+     lambda angle: angle + 0.5 * math.pi),
 )  # fmt: skip
 _MOST_DRAG = 20.0  # over the time of a film
 _BETTER = math.log(1.2)  # more numbers always fit a little better
@@ -87,10 +189,7 @@ class _Left(NamedTuple):
 def _left(problem: Problem, x: FloatArray) -> _Left:
     """What motions leave of the tracks."""
     deviations = problem.deviations(x)
-    angles = [np.empty(0)] + [
-        np.abs(one[TURN, np.isfinite(film.angle)]) for film, one in zip(problem.films, deviations,
-        strict=True) if film.angle is not None
-    ]  # fmt: skip
+    angles = [np.abs(one[TURN, np.isfinite(one[TURN])]) for one in deviations]
     places = [np.hypot(*one[:TURN]) for one in deviations]
     return _Left(np.concatenate(places), np.concatenate(angles))
 
@@ -117,16 +216,16 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
     """
     # residuals are compared, not numbers, and of frames that were kept: a hand fits no reading
     problem = replace(problem.with_films(result.problem.films), level=ROUGH)
-    for film, launch in zip(problem.films, result.problem.launches(result.x), strict=False):
-        _, _, vx, vy, spin, _ = launch.tolist()
+    launches = result.problem.launches(result.x).tolist()
+    for film, (_, _, vx, vy, spin, _) in zip(problem.films, launches, strict=False):
         spins = problem.spec.known()["radius"] * abs(spin) > _SPINS * math.hypot(vx, vy)
         if film.straight is not None and film.angle is not None and spins:
             return (
                 f"Places of {film.name} lie on one line, from which spin and height turn a puck: "
                 "are both x and y in the file?"
             )
-    explanations: list[_Reading] = []
-    if problem.spec.base is None and _may_change(problem.spec) and not speeds:
+    explanations = list[_Reading]()
+    if _may_change(problem.spec) and not speeds:
         drag, air, slope = (
             _reading(partial(_by_floor, result, problem, one)) for one in ("drag", "air", "slope")
         )
@@ -134,8 +233,8 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = law._replace(gain=min(law.gain, drag.gain))
         explanations = [one for one in (drag, law, air, slope) if one]
-    explanations += filter(None, [_reading(partial(_by_mark, result, problem))])
-    explanations += _otherwise(result, problem)
+    marked = filter(None, [_reading(partial(_by_mark, result, problem))])
+    explanations += [*marked, *_otherwise(result, problem)]
     best = max((one.gain for one in explanations), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [
@@ -143,11 +242,8 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         if one.gain > best - _ALIKE or (one.floor and one.gain > max(_MUCH, best - _MUCH))
     ]  # fmt: skip
     least = max([best - _BETTER, *(one.gain + _BETTER for one in near if one.same)])
-    near.sort(
-        key=lambda one: (
-            not one.floor or (one.turns_paths and one.gain < least), -one.gain - _BETTER * one.same
-        )
-    )  # fmt: skip
+    near.sort(key=lambda one: (not one.floor or (one.turns_paths and one.gain < least),
+                               -one.gain - _BETTER * one.same))  # fmt: skip
     if near:
         words = "; or ".join(
             one.words for n, one in enumerate(near)
@@ -173,12 +269,11 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     best, spec = _Reading("", 0.0), problem.spec
     known, others = spec.known()["radius"], []
     held = any(name in said for name in _HELD for said in (spec.fixed, spec.bounds))
-    angles = _ANGLES if spec.base is None else (*_ANGLES, _ACROSS)
+    angles = _ANGLES[:-1] if spec.base is None else _ANGLES
     for words, scale, read in angles if problem.angled and not held else ():
         if (other := _with_angles(problem, scale, read)) is not None:
             others.append((words, other, scale))
-    wider = problem.angled and "radius" not in (*spec.free, *spec.fixed)  # told by angles alone
-    wider = wider and spec.base is None
+    wider = problem.angled and spec.base is None and "radius" not in spec.named  # angles tell it
     if wider:
         words = "with a radius of {:.3g} m" + f" (said to be {spec.puck.radius:g} m)"
         other = replace(problem, spec=replace(spec, free=(*spec.free, "radius")))
@@ -198,9 +293,7 @@ def _otherwise(result: Estimate, problem: Problem) -> list[_Reading]:
     return [best] if best.words else []
 
 
-def _with_angles(
-    problem: Problem, scale: float, read: Callable[[FloatArray], FloatArray]
-) -> Problem | None:
+def _with_angles(problem: Problem, scale: float, read: _Read) -> Problem | None:
     """What was asked, with angles read otherwise, their noise ``scale`` times as much.
 
     None if they differ by whole turns alone.
@@ -227,7 +320,7 @@ def _unwrapped(angle: FloatArray, period: float) -> FloatArray:
 def _by_mark(result: Estimate, problem: Problem) -> _Reading:
     """What is tracked lies off the centre of mass, if that fits far better."""
     spec = problem.spec
-    if not problem.angled or {*MARK} & {*spec.free, *spec.fixed}:
+    if not problem.angled or {*MARK} & spec.named:
         return _Reading("", 0.0)
     free = (*spec.free, *MARK)
     one = initial_estimate(replace(problem, spec=replace(spec, free=free)), refit=False)
@@ -239,8 +332,7 @@ def _gain(result: Estimate, other: _Left, noise: float, scale: float = 1.0) -> f
     """By how much smaller residuals are of another reading; 0 where that tells nothing.
 
     ``scale``: of its angles.  It leaves far less, or no more than noise where one friction leaves
-    more than that; angles that are made small tell nothing so.  Where air or a floor changes in a
-    way that no few numbers tell it may still leave more than noise.
+    more; angles that are made small tell nothing so.  It may still leave more than noise.
     """
     gain = _left(result.problem, result.x).size() - other.size(scale)
     clean = scale == 1.0 and gain > _LITTLE and float(np.median(other.places)) / noise < _CLEAN
@@ -262,8 +354,7 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
     x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
     gain = _gain(result, _left(other, x), problem.noise[0])
     numbers, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
-    tilt = 0.0
-    slowing, free = result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
+    tilt, slowing, free = 0.0, result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
     if floor == "drag":
         force = abs(numbers["drag"]) * speed
         words = f"with drag besides friction: find it, too {free}"
@@ -287,10 +378,10 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
 
 def _may_change(spec: FitSpec) -> bool:
     """Whether nothing was asked that goes with no friction over slip speed."""
-    named = {"drag", *INTEGRATED, "inner", "decel", "gravity"} & {*spec.free, *spec.fixed}
-    uniform = spec.puck.body.law.name == "uniform"
+    named = {"drag", *INTEGRATED, "inner", "decel", "gravity"} & spec.named or spec.speeds
+    uniform = spec.puck.body.law.name == "uniform" and spec.base is None
     lifts = spec.bounds.get("delta", (0.0, 1.0))[0] >= 1.0  # under such laws no base does
-    return uniform and not named and not spec.speeds and not lifts and "friction" in spec.free
+    return uniform and not named and not lifts and "friction" in spec.free
 
 
 def _by_speed(result: Estimate, problem: Problem) -> _Reading:
@@ -298,8 +389,8 @@ def _by_speed(result: Estimate, problem: Problem) -> _Reading:
     other = tried(result)
     gain = _gain(result, _left(other.problem, other.x), problem.noise[0])
     speeds, numbers = other.problem.spec.speeds, other.problem.numbers_at(other.x)
-    values = [numbers[name] for name in NODES[: len(speeds)]]
-    points = ", ".join(f"{f:.2g} at {u:g} m/s" for u, f in zip(speeds, values, strict=True))
+    each = zip(speeds, NODES, strict=False)
+    points = ", ".join(f"{numbers[name]:.2g} at {u:g} m/s" for u, name in each)
     words = (
         f"with a friction over slip speed ({points}): find it (--slip-speeds "
         f"{','.join(f'{u:g}' for u in speeds)})"

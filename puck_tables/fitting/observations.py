@@ -9,6 +9,7 @@ back, or ends there, all these frames are off by one and the same amount: they c
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -19,6 +20,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
 from puck_tables.film.film import Track
 
+Mask = npt.NDArray[np.bool_]  # what counts, or is so
 ROUNDED = 1.0 / math.sqrt(12.0)  # of a step: the spread of what is rounded to it
 _COARSE = 2.0  # times the noise that frames show: a step below is hidden by noise
 _OFF = 0.05  # of a step, as its multiples may be off in a file
@@ -41,8 +43,7 @@ def step_of(*columns: FloatArray) -> float:
     repeated = any(1 < one.size < column.size for one, column in zip(result, columns, strict=True))
     if not gaps.size or not (repeated or gaps.max() > 1.5 * gaps.min()):  # it goes on evenly
         return 0.0
-    near = gaps[gaps < 1.5 * gaps.min()]
-    step = float(np.median(near))
+    step = float(np.median(gaps[gaps < 1.5 * gaps.min()]))
     size = np.round(gaps / step)
     step = float((gaps * size).sum() / (size * size).sum())
     deviations = np.concatenate([
@@ -51,7 +52,7 @@ def step_of(*columns: FloatArray) -> float:
     return step if np.abs(deviations).max() < _OFF else 0.0
 
 
-def counting(values: FloatArray, step: float) -> npt.NDArray[np.bool_]:
+def counting(values: FloatArray, step: float) -> Mask:
     """Which of some values in the order of time (n,) count, where they are rounded to a step.
 
     >>> values = np.array([0.0, 1e-16, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 1.0])
@@ -79,6 +80,11 @@ MEDIAN = 0.6744897501960817  # of |a normal deviate|
 _THIRD = math.sqrt(20.0)  # the spread of a third difference of deviates
 _LAST = 5  # frames whose median is where the puck rests: two strays do not move it
 _FEW_WINDOWS, _ALIKE_TURNS, _FOLLOWED = 3, 0.5, 1.5  # of turns: mean of e^(iθ); rad
+
+_FASTER = 10.0  # times the fastest that a track goes from frame to frame
+_RIM = 100.0  # times that speed: the rim, without angles
+_TURNS = 20.0  # a frame, with angles
+PLACES = ("launch_x", "launch_y")
 
 
 class Straight(NamedTuple):
@@ -123,9 +129,9 @@ class Observations:
     straight: Straight | None = None
     cuttable: tuple[bool, bool] = (True, True)
     steps: tuple[float, float] = (0.0, 0.0)
-    counts: npt.NDArray[np.bool_] | None = None
+    counts: Mask | None = None
 
-    def part(self, chosen: npt.NDArray[np.bool_]) -> Observations:
+    def part(self, chosen: Mask) -> Observations:
         """Some of the frames; the first of them is the new start."""
         first = float(self.time[chosen][0])
         return replace(
@@ -141,6 +147,11 @@ class Observations:
         chosen = np.zeros(self.time.size, bool)
         chosen[np.linspace(0, self.time.size - 1, count).astype(int)] = True
         return self.part(chosen)
+
+    @property
+    def angles(self) -> FloatArray:
+        """The angle (n,) of each frame, rad, NaN where there is none."""
+        return np.full(self.time.size, np.nan) if self.angle is None else self.angle
 
     @property
     def size(self) -> float:
@@ -174,8 +185,7 @@ def observations_in(
             f"fit needs {FEWEST} or more"
         )
     angle = None if track.angle is None else track.angle[chosen]
-    if angle is not None and not np.isfinite(angle).any():
-        angle = None
+    angle = None if angle is None or not np.isfinite(angle).any() else angle
     time = track.time[chosen]
     return _on_grid(Observations(
         track.name, float(time[0]), time - time[0], track.place[chosen], angle,
@@ -186,17 +196,16 @@ def observations_in(
 
 def _on_grid(film: Observations) -> Observations:
     """A film with what is to be known of its rounding."""
-    turn = np.full(film.time.size, np.nan) if film.angle is None else film.angle
     place, angle = (
         0.0 if step <= _COARSE * noise else step  # noise (NaN where it is not known) hides it
-        for step, noise in zip((step_of(*film.place.T), step_of(turn)), noise_of([film]),
+        for step, noise in zip((step_of(*film.place.T), step_of(film.angles)), noise_of([film]),
         strict=True)
     )  # fmt: skip
     steps = place, angle
     if not any(steps):
         return film
     counts = np.ones((film.time.size, 3), bool)
-    for k, rows in enumerate((*film.place.T, turn)):
+    for k, rows in enumerate((*film.place.T, film.angles)):
         if step := steps[k // 2]:
             known = np.isfinite(rows)
             counts[known, k] = counting(rows[known], step)
@@ -333,8 +342,7 @@ def turning_of(film: Observations) -> Turning | None:
     follow = np.flatnonzero(known & (np.abs(np.diff(film.time) / step - 1.0) < _ALIKE))
     if follow.size < FEWEST - 1:
         return None
-    width = max(1, min(7, follow.size // 3))
-    windows = np.array_split(follow, follow.size // width)
+    windows = np.array_split(follow, follow.size // max(1, min(7, follow.size // 3)))
     forward = np.exp(1j * (film.angle[follow + 1] - film.angle[follow]))
     mean = np.array([part.mean() for part in np.array_split(forward, len(windows))])
     time = np.array([film.time[w].mean() + 0.5 * step for w in windows])
@@ -348,3 +356,45 @@ def turning_of(film: Observations) -> Turning | None:
     middle = float(np.angle(np.nanmean(np.exp(1j * deviations))))
     angle = turned + middle + wrapped(deviations - middle)
     return Turning(step, time, rate, angle, bool(sure))
+
+
+def robust_parabola(time: FloatArray, place: FloatArray, start: int, stop: int) -> FloatArray:
+    """Coefficients (3, 2) of a parabola through frames, outliers weighing little."""
+    t, p = time[start:stop], place[start:stop]
+    powers = np.stack([np.ones(t.size), t, t * t], axis=1)[:, : min(3, max(1, t.size - 1))]
+    weights = np.ones(t.size)
+    result = np.zeros((3, 2))
+    for _ in range(6):
+        root = np.sqrt(weights)[:, None]
+        coefficients = np.linalg.lstsq(powers * root, p * root, rcond=None)[0]
+        deviations = np.hypot(*(p - powers @ coefficients).T)
+        spread = max(float(np.median(deviations)), 1e-9 * float(np.abs(p).max()), 1e-150)
+        weights = 1.0 / (1.0 + (deviations / (2.0 * spread)) ** 2) ** 2
+    result[: len(coefficients)] = coefficients
+    return result
+
+
+def range_in(name: str, films: Sequence[Observations], radius: float) -> tuple[float, float]:
+    """The range of a number of a launch, or of a wall that the pucks of some tracks meet."""
+    place = np.concatenate([film.place for film in films])
+    size = max(float(np.ptp(place, axis=0).max()), radius)
+    if name in PLACES:
+        along = place[:, PLACES.index(name)]
+        return float(along.min()) - size, float(along.max()) + size
+    if name == "wall_distance":
+        most = float(np.hypot(*place.T).max()) + size + 2.0 * radius
+        return -most, most
+    fastest = max(
+        float((np.hypot(*np.diff(film.place, axis=0).T) / np.diff(film.time)).max())
+        for film in films
+    )  # fmt: skip
+    fastest = max(fastest, 1e-3 * radius / max(float(film.time[-1]) for film in films))
+    if name in ("launch_vx", "launch_vy"):
+        return -_FASTER * fastest, _FASTER * fastest
+    if name == "launch_spin":
+        turns = [
+            2.0 * math.pi * _TURNS / film.usual_step for film in films if film.angle is not None
+        ]
+        most = max([_RIM * fastest / radius, *turns])
+        return -most, most
+    return -math.inf, math.inf  # an angle begins anew after each turn

@@ -22,7 +22,6 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
@@ -35,14 +34,13 @@ from puck_tables.fitting.certainty import (
     pinned_of,
     widened,
 )
-from puck_tables.fitting.estimate import FARTHEST, Estimate, estimate, freedom
-from puck_tables.fitting.identifiability import ran_away
+from puck_tables.fitting.estimate import FARTHEST, Estimate, chi2_under, estimate, freedom
+from puck_tables.fitting.fit_spec import ALL, LAUNCH, WALL
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.inputs import refuse_wobbling
-from puck_tables.fitting.least_squares import compact, minimise, multi_start
-from puck_tables.fitting.model_comparison import chi2_under
 from puck_tables.fitting.numbers import Number, numbers_of
-from puck_tables.fitting.observations import GIVE_NOISE
+from puck_tables.fitting.observations import GIVE_NOISE, Mask
+from puck_tables.fitting.problem import Problem, compact, minimise, multi_start
 from puck_tables.fitting.residuals import (
     SideForces,
     excess_of,
@@ -51,15 +49,15 @@ from puck_tables.fitting.residuals import (
     no_answer,
     side_forces,
 )
-from puck_tables.fitting.starts import minima_of, numbers_with
-from puck_tables.fitting.whole_turns import (
+from puck_tables.fitting.slowing import on_another_floor
+from puck_tables.fitting.starts import (
     EXCLUDED,
     LESS,
     MISFIT,
     Judged,
     half_turns,
     is_slow,
-    on_another_floor,
+    minima_of,
     preferred,
 )
 
@@ -209,7 +207,7 @@ def _of_other_spins(result: Estimate) -> list[FloatArray]:
         other[:, 4] = spins
         # what slows the puck is about J times the share of its speed in the slip
         slows = decel * np.hypot(speed, radius * spins).sum() / slip
-        x = problem.unknowns({**numbers, **numbers_with(problem.spec, slows, tilt)}, other)
+        x = problem.unknowns({**numbers, **problem.spec.with_scales(slows, tilt)}, other)
         starts.append((problem, x))
     walked = multi_start(starts, _TO_OTHERS, allowance=RISE, kept=result.kept)
     return [x for x, cost in walked if 2.0 * cost < result.chi2 + 2.0 * RISE]
@@ -254,7 +252,7 @@ def _near(result: Estimate, x: FloatArray, held: list[int]) -> bool:
     return float(left @ left) < result.chi2 + 2.0 * EXCLUDED
 
 
-def _known(result: Estimate, certainty: Certainty) -> tuple[npt.NDArray[np.bool_], FloatArray]:
+def _known(result: Estimate, certainty: Certainty) -> tuple[Mask, FloatArray]:
     """Which numbers of the puck, and whether its spin, a summit tells; how far off another is."""
     names = result.problem.names
     spec = np.array([track == -1 or name == _SPIN for track, name in names], bool)
@@ -379,3 +377,23 @@ def _wider(
         by_law = np.outer(forces.by_law, forces.by_law)
         certainty = certainty.wider(certainty.covariance + by_law, False)
     return certainty
+
+
+def ran_away(problem: Problem, x: FloatArray) -> str:
+    """A sentence where a launch lies on the end of what the film leaves it; else none."""
+    for (track, name), value, low, high in zip(problem.names, x, *problem.limits, strict=True):
+        if name in problem.spec.bounds or name not in (*LAUNCH, *WALL) or low == -math.inf:
+            continue
+        if min(value - low, high - value) <= _AT_END * (high - low):
+            kind = ALL.get(name) or WALL[name]
+            of = f" of {problem.films[track].name}" if track >= 0 else ""
+            return (
+                f"Nothing is determined: the fit runs away, {kind.words}{of} to {value:.3g} "
+                f"{kind.unit}, the end of what is looked for, as nobody would believe: the tracks "
+                "look alike all the way, or another law moves this puck. What would tell: angle "
+                f"marks on the puck, or bounds of {name}, or its value, if it is known"
+            )
+    return ""
+
+
+_AT_END = 1e-3  # of the width of a range

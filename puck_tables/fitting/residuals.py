@@ -113,7 +113,10 @@ def is_clean(result: Estimate, excess: float = 1.2, chance: float = 0.01) -> boo
 def computed(result: Estimate) -> bool:
     """Whether residuals are so small that they are the errors of what is computed."""
     problem = result.problem
-    least = max(_COMPUTED * problem.size, 1.01 * problem.least_noise(result.x)[0])
+    least = max(
+        _COMPUTED * max(film.size for film in problem.films),
+        1.01 * problem.least_noise(result.x)[0],
+    )
     return not problem.noise[0] > least
 
 
@@ -132,12 +135,13 @@ def may_misfit(result: Estimate, explained: float) -> bool:
 
 def no_answer(result: Estimate) -> str:
     """A sentence where no motion comes near the tracks, and nothing is determined; else none."""
-    usual = result.size
+    usual, problem = result.size, result.problem
+    size = max(film.size for film in problem.films)
     times = max(excess_of(result), usual if any(result.problem.known[:2]) else 0.0)
-    if times > _NOWHERE and usual * result.problem.noise[0] > _FAR * result.problem.size:
+    if times > _NOWHERE and usual * problem.noise[0] > _FAR * size:
         far = f"the nearest is {times:.3g} times the noise off"
-    elif result.problem.angled and usual * result.problem.noise[1] > _ANY:
-        far = f"angles are {usual * result.problem.noise[1]:.2g} rad off the nearest"
+    elif problem.angled and usual * problem.noise[1] > _ANY:
+        far = f"angles are {usual * problem.noise[1]:.2g} rad off the nearest"
     else:
         return ""
     return (
@@ -238,7 +242,7 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
     shares = {kind: _explained(columns[:, kind], left, result.degrees) for kind in _KINDS}
     forces = {kind: one.force / lengths[list(kind)] for kind, one in shares.items()}
     decel = problem.spec.scales(values)[0]
-    gravity = {**problem.spec.known(), **values}["gravity"]
+    gravity = problem.spec.numbers(values)["gravity"]
     tilt = math.degrees(math.hypot(*forces[SLOPE]) / gravity)
     best = max(one.gain for one in shares.values())
     near = [kind for kind, one in shares.items() if one.gain > best - _ALIKE]

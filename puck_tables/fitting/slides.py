@@ -1,4 +1,4 @@
-"""The slides of tracks, from impact to impact, and how they change with the unknowns.
+"""The unknowns of tracks, the slides from impact to impact that they mean, and their derivatives.
 
 A state at an impact changes with the launch of its slide and with what moves the puck; the moment t
 with the gap of the rims, dt = dgap/u_n; the state after it with all of these, the wall and the
@@ -7,54 +7,205 @@ numbers of the rims.  The law of impact is differenced, and the chain is their p
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import cached_property
+import math
+from collections.abc import Iterator
+from functools import cached_property, partial
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.fitting.fit_spec import LAUNCH, MARK, MOST, OWN_MOTION, WALL, FitSpec
 from puck_tables.fitting.forward_model import (
     AS_LAUNCH,
     DECEL,
     DELTA,
+    LEAST_NUMBER,
     PLACE,
     RADIUS,
     SPIN,
+    STEP,
     TIME,
     VX,
     VY,
     ImpactSpec,
     ImpactState,
     Moving,
+    Rims,
     Slide,
-    after_impact,
-    gap_of,
+    WallLine,
     impact_at,
+    marked,
+    slopes_after,
     states_and_slopes,
     states_of,
+    turned,
 )
-from puck_tables.fitting.parameters import LAUNCH, MARK, OWN_MOTION
-from puck_tables.fitting.unknowns import NumbersOf, Unknowns
+from puck_tables.fitting.observations import PLACES, Observations, range_in
 
-_STEP = 1e-6  # of a number: of differences, forward and central
+_DRAGGED = 100.0  # drag times the length of a film: nothing, or all there is, is left of a speed
+_PRIOR = 8.0  # standard deviations of a prior
+_NOTICED = 0.75  # of the time between frames, twice the error of a readout that the tracks tell
+# scales are plausible within their own size, but not less than this
+_LEAST = {"friction": 1e-3, "decel": 1e-2, "gravity": 1e-2, "height": 1e-4, "radius": 1e-4}
 _SHAPE_STEP = 1e-4  # of what has a curve of its own at each value
-_LEAST = 1e-2  # that a number is taken to be at least, in its unit, for a step
-_FRAMES = list[tuple[slice, FloatArray, Slide]]
+
+NumbersOf = dict[str, float]
+_MOTION = ("launch_vx", "launch_vy", "launch_spin")
+_ACROSS = (("launch_y", "launch_vy"), ("launch_x", "launch_vx"))  # of lines that x, or y, tells
+_WALL = -2  # the first wall in names, the next is one less
 
 
-class Slides(Unknowns):
-    """How the pucks of some tracks move: in slides, of which impacts begin all but the first."""
+class Slides:
+    """What is asked of some tracks, the unknowns that answer it, and how the pucks then move.
 
+    They do in slides, of which impacts begin all but the first.
+    """
+
+    spec: FitSpec
+    films: tuple[Observations, ...]
+    tall: bool
+    rests: tuple[bool, ...]
+    walls: tuple[WallLine | None, ...]
     impact_specs: tuple[ImpactSpec, ...]
+
+    @cached_property
+    def spinless(self) -> tuple[bool, ...]:
+        """Which tracks are taken for slides without spin: those along a line, without angles.
+
+        Unless something is said of their spin.
+        """
+        spec = self.spec
+        said = any("launch_spin" in one for one in (spec.fixed, spec.priors, spec.bounds,
+                                                    spec.start))  # fmt: skip
+        return tuple(
+            not said and film.straight is not None and film.angle is None for film in self.films
+        )
+
+    @cached_property
+    def names(self) -> tuple[tuple[int, str], ...]:
+        """(track, name) of every unknown; −1 for the puck, −2 for the first wall, and so on."""
+        launches, rests = [], self.rests or (False,) * len(self.films)
+        every = enumerate(zip(self.films, rests, self.spinless, strict=True))
+        for n, (film, rest, spinless) in every:
+            known = {*self.spec.fixed, *(_MOTION if rest else ())}
+            known |= {"launch_angle"} if film.angle is None else set()
+            known |= {"launch_spin"} if spinless else set()
+            known |= set() if film.straight is None else {*_ACROSS[film.straight.main]}
+            launches += [(n, name) for name in LAUNCH if name not in known]
+        walls = [_WALL - n for n, wall in enumerate(self.walls) if wall is None]
+        return (*((-1, name) for name in self.spec.free), *launches, *product(walls, WALL))
+
+    @cached_property
+    def priors(self) -> tuple[tuple[int, float, float], ...]:
+        """(unknown, value, standard deviation).
+
+        That of a readout, unless it or bounds are given: a picture is read before the next one.
+        """
+        known = {**self.spec.priors}
+        if self.read_within is not None:
+            known["readout"] = 0.5 * self.read_within, 0.5 * self.read_within
+        return tuple((k, *known[name]) for k, (_, name) in enumerate(self.names) if name in known)
+
+    @property
+    def read_within(self) -> float | None:
+        """The usual time between two frames, s, None where readout has a prior or bounds."""
+        if "readout" in (*self.spec.priors, *self.spec.bounds):
+            return None
+        return min(film.usual_step for film in self.films)
+
+    @cached_property
+    def limits(self) -> tuple[FloatArray, FloatArray]:
+        """The least and the largest value of each unknown (m,).
+
+        No δ is higher than motions of such a puck are known; bounds of the caller's are taken as
+        they are, and his start and prior lie within.
+        """
+        spec, pairs = self.spec, []
+        for track, name in self.names:
+            low, high = spec.limits(name)
+            if name == "delta":
+                high = min(high, spec.highest(self.tall))
+            elif name in ("friction", "decel"):
+                high = min(high, spec.steepest(name))
+            elif name == "drag":
+                end = max(float(film.time[-1]) for film in self.films)
+                most = min(_DRAGGED / end, MOST["drag"])
+                low, high = max(low, -most), min(high, most)
+            elif name not in spec.bounds and name in (*LAUNCH, *WALL):
+                own = self.films if track < 0 else [self.films[track]]
+                value, spread = spec.priors.get(name, (math.nan, 0.0))
+                wanted = spec.start.get(name), value - _PRIOR * spread, value + _PRIOR * spread
+                ends = [*range_in(name, own, spec.puck.radius), *wanted]
+                low, high = (float(of(np.array(ends, float))) for of in (np.nanmin, np.nanmax))
+            pairs.append((low, high))
+        low_high = np.array(pairs).reshape(-1, 2)
+        return low_high[:, 0], low_high[:, 1]
+
+    def plausible(self, x: FloatArray) -> FloatArray:
+        """What is plausible for every unknown (m,): of scales their own size."""
+        result, launches = self.numbers_at(x), self.launches(x)
+        radius = self.spec.scales(result)[2]
+        sizes = []
+        for track, name in self.names:
+            if name == "readout" and self.read_within is not None:
+                sizes.append(_NOTICED * self.read_within)
+            elif track == -1 and name in _LEAST:
+                sizes.append(max(abs(result[name]), _LEAST[name]))
+            elif track == -1:
+                own = self.spec.parameters[name].plausible
+                sizes.append(self.spec.puck.radius if name in MARK else own)
+            elif name in ("launch_angle", "wall_angle"):
+                sizes.append(1.0)
+            elif name in (*PLACES, "wall_distance"):
+                every = [film.place for film in ([self.films[track]] if track >= 0 else self.films)]
+                sizes.append(float(np.ptp(np.concatenate(every), axis=0).max()) or radius)
+            else:
+                _, _, vx, vy, spin, _ = launches[track]
+                slip = math.hypot(vx, vy, radius * spin) or 1.0
+                sizes.append(slip / radius if name == "launch_spin" else slip)
+        return np.asarray(np.maximum(np.array(sizes), 1e-12))
+
+    def numbers_at(self, x: FloatArray) -> NumbersOf:
+        """The numbers of the puck that are found."""
+        return dict(zip(self.spec.free, x[: len(self.spec.free)].tolist(), strict=True))
+
+    def launches(self, x: FloatArray) -> FloatArray:
+        """The launch (6,) of each track: x, y, vx, vy, spin, angle; (tracks, 6)."""
+        out = np.empty((len(self.films), len(LAUNCH)))
+        out[:] = [self.spec.fixed.get(name, 0.0) for name in LAUNCH]
+        order = list(LAUNCH)
+        for k, (track, name) in enumerate(self.names):
+            if track >= 0:
+                out[track, order.index(name)] = x[k]
+        for row, film in zip(out, self.films, strict=True):
+            if film.straight is not None:
+                main, point = film.straight.main, film.straight.point
+                other = 1 - main
+                row[other] = point[other] + film.straight.slope * (row[main] - point[main])
+                row[2 + other] = film.straight.slope * row[2 + main]
+        return out
+
+    def unknowns(
+        self, result: NumbersOf, launches: FloatArray, walls: tuple[WallLine, ...] = ()
+    ) -> FloatArray:
+        """The vector of unknowns from what they mean."""
+        launch, wall = list(LAUNCH), list(WALL)
+        return np.array([
+            result[name] if track == -1 else launches[track, launch.index(name)] if track >= 0
+            else walls[_WALL - track][wall.index(name)] for track, name in self.names
+        ], float)  # fmt: skip
+
+    def estimated_walls(self, x: FloatArray) -> tuple[WallLine, ...]:
+        """All walls, given or found."""
+        numbers = x[len(self.names) - len(WALL) * self.walls.count(None) :].reshape(-1, len(WALL))
+        every = iter(numbers.tolist())
+        return tuple(WallLine(*next(every)) if wall is None else wall for wall in self.walls)
 
     def moving(self, result: NumbersOf) -> Moving:
         """What moves the puck."""
         return self.spec.moving(result, self.tall)
-
-    def gyration(self, result: NumbersOf) -> float:
-        """The radius of gyration over r."""
-        return {**self.spec.known(), **result}["gyration"]
 
     def fastest(self, x: FloatArray) -> float:
         """The greatest slip at a launch, at the rim, m/s."""
@@ -68,36 +219,38 @@ class Slides(Unknowns):
         Times are those after the start of the first track.
         """
         result, slides, impacts = self.numbers_at(x), [], []
+        numbers = self.spec.numbers(result)
         for film, launch in zip(self.films, self.launches(x), strict=True):
-            late = 0.0 if film.row is None else self.spec.readout(result) * float(film.row[0])
+            late = 0.0 if film.row is None else numbers.get("readout", 0.0) * float(film.row[0])
             slides.append([Slide(film.start - self.films[0].start + late, launch)])
-        if self.impact_specs:
-            moving, walls = self.moving(result), self.estimated_walls(x)
-            gyration = self.gyration(result)
         for impact_spec in self.impact_specs:
-            wall = None if impact_spec.wall < 0 else walls[impact_spec.wall]
             before = tuple(slides[n][-1] for n in impact_spec.films)
-            impact = impact_at(
-                moving, gyration, self.spec.rims(result, wall is None), impact_spec, before, wall
-            )
+            _, gyration, rims, wall = self._met(impact_spec.wall, x)
+            impact = impact_at(self.moving(result), gyration, rims, impact_spec, before, wall)
             for n, slide in zip(impact_spec.films, impact.after, strict=True):
                 slides[n].append(slide)
             impacts.append(impact)
         return slides, impacts
+
+    def _met(self, wall: int, x: FloatArray) -> tuple[float, float, Rims, WallLine | None]:
+        """Radius m, radius of gyration over it, rims, and the wall of an impact, by its number."""
+        result, pair = self.numbers_at(x), wall < 0
+        numbers, line = self.spec.numbers(result), None if pair else self.estimated_walls(x)[wall]
+        return numbers["radius"], numbers["gyration"], self.spec.rims(result, pair), line
 
     def times(self, n: int, result: NumbersOf) -> FloatArray:
         """The times of a track's frames after its first: lines of a picture are read in turn."""
         film = self.films[n]
         if film.row is None:
             return film.time
-        late: FloatArray = self.spec.readout(result) * (film.row - film.row[0])
-        return film.time + late
+        readout = self.spec.numbers(result).get("readout", 0.0)
+        return np.asarray(film.time + readout * (film.row - film.row[0]))
 
-    def _parts(self, n: int, result: NumbersOf, slides: list[Slide]) -> _FRAMES:
+    def _parts(
+        self, n: int, result: NumbersOf, slides: list[Slide]
+    ) -> list[tuple[slice, FloatArray, Slide]]:
         """The frames of each slide of a track, their times after its launch, and the slide."""
         times = self.times(n, result)
-        if len(slides) == 1:
-            return [(slice(0, times.size), times, slides[0])]
         since = np.array([slide.since - slides[0].since for slide in slides])
         firsts = np.searchsorted(times, since[1:])
         ends = [0, *np.maximum.accumulate(firsts).tolist(), times.size]
@@ -119,8 +272,8 @@ class Slides(Unknowns):
 
     def paths(self, x: FloatArray) -> list[FloatArray]:
         """Places and angles (3, n) of the model at the frames of each track."""
-        mark = self.spec.mark(self.numbers_at(x))
-        return [_marked(states[PLACE], mark) for states in self.states(x)]
+        numbers = self.spec.numbers(self.numbers_at(x))
+        return [marked(states[PLACE], numbers) for states in self.states(x)]
 
     def paths_and_slopes(
         self, x: FloatArray
@@ -135,16 +288,16 @@ class Slides(Unknowns):
             slopes = np.empty((3, film.time.size, columns.size))
             parts = self._parts(n, result, slides[n])
             for (frames, times, slide), change in zip(parts, changes[n], strict=True):
-                row = None if film.row is None else film.row[frames]
-                of = at.states_and_slopes(slide, change[:, columns], times, PLACE, row)
-                path[:, frames], slopes[:, frames] = of[0][PLACE], of[1]
-            mark = self.spec.mark(result)
-            arm = _marked(path, mark) - path  # which turns with the body
+                states, own, rates = at.states_and_slopes(slide, change[:, columns], times, PLACE)
+                if film.row is not None and (-1, "readout") in self.spots:
+                    own[:, :, self.spots[-1, "readout"]] += rates * film.row[frames]
+                path[:, frames], slopes[:, frames] = states[PLACE], own
+            arm = marked(path, self.spec.numbers(result)) - path  # which turns with the body
             slopes[0] -= arm[1][:, None] * slopes[2]
             slopes[1] += arm[0][:, None] * slopes[2]
             for k, name in enumerate(self.spec.free):
                 if name in MARK:
-                    slopes[..., k] += _marked(path, np.eye(2)[MARK.index(name)]) - path
+                    slopes[..., k] += marked(path, {**dict.fromkeys(MARK, 0.0), name: 1.0}) - path
             yield path + arm, slopes, columns
 
     def slopes_of_slides(self, x: FloatArray) -> list[list[FloatArray]]:
@@ -161,7 +314,7 @@ class Slides(Unknowns):
                 since = np.array([impact.time - slide.since])
                 _, out, speed = at.states_and_slopes(slide, slopes[n][-1], since, slice(6))
                 before.append((out[AS_LAUNCH, 0], speed[AS_LAUNCH, 0]))
-            after = _through(self, x, impact_spec, impact, before)
+            after = slopes_after(impact, before, x, partial(self._met, impact_spec.wall))
             for n, one in zip(impact_spec.films, after, strict=True):
                 slopes[n].append(one)
         return slopes
@@ -190,8 +343,7 @@ class _Along:
 
     def __init__(self, problem: Slides, result: NumbersOf) -> None:
         spec = problem.spec
-        self._problem, self._moving = problem, problem.moving(result)
-        self._nearby: list[Moving] = []
+        self._moving, self._nearby = problem.moving(result), list[Moving]()
         self._parts: list[tuple[int, float]] = []  # of the difference of each, by an unknown
         self._scales = np.zeros((7, len(spec.free)))  # which are the first unknowns
         for k, name in enumerate(spec.free):
@@ -199,7 +351,7 @@ class _Along:
                 self._scales[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
                 continue
             value, (low, high) = result[name], spec.limits(name)
-            step = _STEP * max(abs(value), _LEAST) * (1.0 if value < high else -1.0)
+            step = STEP * max(abs(value), LEAST_NUMBER) * (1.0 if value < high else -1.0)
             ends = [value + step]
             if name in OWN_MOTION:  # known less well
                 ends = [min(value + _SHAPE_STEP, high), max(value - _SHAPE_STEP, low)]
@@ -209,12 +361,11 @@ class _Along:
                 self._parts.append((k, part))
 
     def states_and_slopes(
-        self, slide: Slide, change: FloatArray, times: FloatArray, rows: slice,
-        row: FloatArray | None = None,
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+        self, slide: Slide, change: FloatArray, times: FloatArray, rows: slice
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
         """States (6, n) at times (n,) after a launch, derivatives (k, n, m) of k rows, by time.
 
-        ``change`` (7, m): of the slide; ``row`` (n,): how far down the picture the frames show it.
+        ``change`` (7, m): of the slide.
         """
         states, every, differ = states_and_slopes(self._moving, slide.launch, times, self._nearby)
         slopes = every[:, rows].swapaxes(0, 1)
@@ -224,71 +375,7 @@ class _Along:
         out: FloatArray = (slopes.reshape(-1, 7) @ by).reshape(*slopes.shape[:2], -1)
         out[PLACE] += change[[1, 2, 6], None]
         if self._moving.motions.angle is not None:
-            out += _turned(slide.launch, states, every)[rows, :, None] * change[6]
+            out += turned(slide.launch, states, every)[rows, :, None] * change[6]
         for (k, part), difference in zip(self._parts, differ, strict=True):
             out[:, :, k] += part * difference[rows]
-        if row is not None and (-1, "readout") in self._problem.spots:
-            out[:, :, self._problem.spots[-1, "readout"]] += slopes[:, :, TIME] * row
         return states, out, slopes[:, :, TIME]
-
-
-def _marked(path: FloatArray, mark: Sequence[float]) -> FloatArray:
-    """Places and angles (3, n) of what is tracked on a body with such ones."""
-    if not any(mark):
-        return path
-    (x, y), cosine, sine = mark, np.cos(path[2]), np.sin(path[2])
-    return np.stack([path[0] + cosine * x - sine * y, path[1] + sine * x + cosine * y, path[2]])
-
-
-def _turned(launch: FloatArray, states: FloatArray, slopes: FloatArray) -> FloatArray:
-    """How states (6, n) change with the angle at which a body that is not round is launched."""
-    out: FloatArray = -slopes[:, :, [VX, VY]] @ np.array([-launch[3], launch[2]])
-    out[:, [0, 1]] += np.stack([launch[1] - states[1], states[0] - launch[0]], axis=1)
-    out[:, [3, 4]] += np.stack([-states[4], states[3]], axis=1)
-    return out.T.copy()
-
-
-def _through(
-    problem: Slides, x: FloatArray, impact_spec: ImpactSpec, impact: ImpactState,
-    before: list[tuple[FloatArray, FloatArray]],
-) -> list[FloatArray]:  # fmt: skip
-    """The derivatives (7, m) of the slides after an impact."""
-    slopes = [np.zeros((7, x.size)) for _ in before]
-    pair = impact_spec.wall < 0
-    for k in range(x.size):
-        step = _STEP * max(abs(float(x[k])), _LEAST)
-        means = []
-        for side in (1.0, -1.0):
-            moved = x.copy()
-            moved[k] += side * step
-            result = problem.numbers_at(moved)
-            wall = None if pair else problem.estimated_walls(moved)[impact_spec.wall]
-            means.append((side * step, problem.spec.scales(result)[2], result, wall))
-        later = 0.0
-        if impact.touches:
-            gaps = [
-                gap_of(_shifted(impact, before, k, by, 0.0), wall, radius)
-                for by, radius, _, wall in means
-            ]
-            approach = 0.5 * (gaps[0][1] + gaps[1][1])
-            later = (gaps[0][0] - gaps[1][0]) / (2.0 * step * approach) if approach > 0.0 else 0.0
-        ends = []
-        for by, radius, result, wall in means:
-            gyration, rims = problem.gyration(result), problem.spec.rims(result, pair)
-            states = _shifted(impact, before, k, by, later)
-            ends.append(after_impact(states, radius, gyration, rims, wall)[0])
-        for out, one, two in zip(slopes, *ends, strict=True):
-            out[0, k], out[1:, k] = later, (one - two) / (2.0 * step)
-    # a state holds x, y, vx, vy, spin, angle as a launch does
-    return slopes
-
-
-def _shifted(
-    impact: ImpactState, before: list[tuple[FloatArray, FloatArray]], k: int, by: float,
-    later: float,
-) -> list[FloatArray]:  # fmt: skip
-    """States at an impact where an unknown is changed."""
-    return [
-        state + by * (slope[:, k] + speed * later)
-        for state, (slope, speed) in zip(impact.before, before, strict=True)
-    ]

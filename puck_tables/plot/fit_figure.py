@@ -11,8 +11,8 @@ from numpy.polynomial.polynomial import polyval
 
 from puck_tables._core.monotone import monotone_cubic
 from puck_tables.fitting.fit_result import Fit
+from puck_tables.fitting.fit_spec import NODES
 from puck_tables.fitting.forward_model import states_of
-from puck_tables.fitting.parameters import NODES
 from puck_tables.plot.style import BLUE, COLORS, GREY, LAUNCH, ORANGE, RED, canvas
 from puck_tables.plot.titles import legend_below, titled
 
