@@ -203,14 +203,10 @@ def _foreseen(slopes: FloatArray, kept: Mask) -> FloatArray:
     """How far off frames that are left out may be (n,): by what is not known of the motion, too."""
     result = np.ones(kept.size)
     if not kept.all():
-        size = np.maximum(np.linalg.norm(slopes[kept], axis=0), 1e-300)
-        scaled = slopes / size
+        scaled = slopes / np.maximum(np.linalg.norm(slopes[kept], axis=0), 1e-300)
         covariance = np.linalg.pinv(scaled[kept].T @ scaled[kept], hermitian=True)
-        out = scaled[~kept]
-        result[~kept] = np.sqrt(
-            1.0
-            + np.maximum(np.einsum("nk,kl,nl->n", out, covariance, out), 0.0)  # but for rounding
-        )
+        variance = np.einsum("nk,kl,nl->n", scaled[~kept], covariance, scaled[~kept])
+        result[~kept] = np.sqrt(1.0 + np.maximum(variance, 0.0))  # but for rounding
     return result
 
 

@@ -28,7 +28,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.speed_motion import SPEED_ACCURACY, SpeedFriction, SpeedLaunch, speed_paths
-from puck_tables.fitting.unit_motions import UnitMotions
+from puck_tables.fitting.unit_motions import Sloped, UnitMotions
 from puck_tables.motion.impact_law import along_normal, impulses
 
 _SPEED_STEP = 1e-6  # of a slip at the rim, of a radius, of δ
@@ -112,9 +112,7 @@ def _placed(launch: FloatArray, states: FloatArray) -> FloatArray:
     return states
 
 
-def _path(
-    moving: Moving, launch: FloatArray, times: FloatArray, want: bool
-) -> tuple[FloatArray, FloatArray]:
+def _path(moving: Moving, launch: FloatArray, times: FloatArray, want: bool) -> Sloped:
     """States from (0, 0) on, and derivatives if they are wanted."""
     c, at = moving.drag, moving.arguments(launch)
     moving = moving._replace(motions=moving.motions.facing(launch[5]))
@@ -146,9 +144,7 @@ def _path(
     return moved, out
 
 
-def _without_drag(
-    moving: Moving, at: FloatArray, times: FloatArray, want: bool
-) -> tuple[FloatArray, FloatArray]:
+def _without_drag(moving: Moving, at: FloatArray, times: FloatArray, want: bool) -> Sloped:
     if want:
         return moving.motions.states_and_slopes(at, times)
     return moving.motions.states(at[:, None], times[None])[:, 0], np.empty((0, 6, 7))

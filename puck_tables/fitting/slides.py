@@ -263,12 +263,9 @@ class Slides:
         """The states (6, n) of the model at the frames of each track."""
         result = self.numbers_at(x)
         moving, (slides, _) = self.moving(result), self.slides(x)
-        return [
-            np.concatenate([
-                states_of(moving, slide.launch, times)
-                for _, times, slide in self._parts(n, result, track)
-            ], axis=1) for n, track in enumerate(slides)
-        ]  # fmt: skip
+        every = (self._parts(n, result, track) for n, track in enumerate(slides))
+        return [np.concatenate([states_of(moving, one.launch, times) for _, times, one in parts],
+                               axis=1) for parts in every]  # fmt: skip
 
     def paths(self, x: FloatArray) -> list[FloatArray]:
         """Places and angles (3, n) of the model at the frames of each track."""
