@@ -115,7 +115,7 @@ def test_a_part_stands_alone(language: str, what: str, tmp_path: Path):
     found, _ = run(what, np.ascontiguousarray(rows))
     scale = units(rows, "stop") if what == "stop" else 1.0
     assert (np.abs(found - wanted) / scale).max() <= 1e-4
-    others = {"stop": "SIMILARITY", "resultants": "STOP"}  # words of what was not asked for
+    others = {"stop": "MOTION", "resultants": "STOP"}  # words of what was not asked for
     assert others[what] not in text_of(language, what, 1e-4)
 
 

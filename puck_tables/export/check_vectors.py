@@ -43,11 +43,11 @@ INPUTS = {"stop": 6, "state": 7, "turn": 6, "resultants": 2, "wrench": 4, "step"
 _HEIGHTS = (0.0, 1.0)  # dimensionless: both ends of the tables
 
 
-def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> dict[str, Cases]:
+def cases_of(functions: Sequence[str], tol: float, kind: Puck) -> dict[str, Cases]:
     """Width of a vector and all their numbers, by function.
 
     ``functions``: of the exported file; ``tol``: of it; numbers have as many digits as tell it;
-    ``kind``: whose pressure law and gyration; default: homogeneous, under uniform pressure.
+    ``kind``: whose pressure law and gyration.
     """
     made = {
         "stop": _stops, "state": _states, "turn": _turns, "resultants": _resultants,
@@ -56,7 +56,7 @@ def cases_of(functions: Sequence[str], tol: float, kind: Puck | None = None) -> 
     digits = round(-math.log10(tol)) + 2
     cases = {}
     for name in functions:
-        rows = made[name](Puck(radius=1.0) if kind is None else kind)
+        rows = made[name](kind)
         inputs = INPUTS[name]
         cases[name] = rows.shape[1], tuple(
             value if n < inputs else float(f"{value:.{digits}g}")

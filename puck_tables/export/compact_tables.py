@@ -1,9 +1,7 @@
 """The smallest tables of an error: uniform B-splines in ξ, polynomials in 2δ² − 1, whole numbers.
 
-What the stop table holds is fitted again, on either side of φ = π/4, with the degree, the cells,
-the powers and the digits that cost least.  Of a place on the curve, 2k/(1 + k) = q² with
-q = ξ (2 − ξ): a root less than on the axis of the stop table (:mod:`puck_tables.stopping.lookup`),
-and fewer cells for all errors that are exported but the smallest.  The B-splines are a partition of
+Values on each side of the marks of a law (:mod:`puck_tables.export.law_values`) are fitted with the
+degree, the cells, the powers and the digits that cost least.  The B-splines are a partition of
 unity: coefficients rounded to whole quanta err by no more than half a quantum.
 """
 
@@ -16,20 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from numpy.polynomial import chebyshev
-from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
+from scipy.interpolate import BSpline, make_lsq_spline
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import AccuracyError
 from puck_tables.stopping.lookup import heights, series_to_powers
-from puck_tables.stopping.stop_table import StopTable
 
 DEGREES = range(3, 8)
-CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4))
+CELLS = (*range(4, 28), *range(28, 48, 2), *range(48, 97, 4), *range(104, 129, 8))
 _POWERS = 0.65  # of a share: what dropped powers may take
 # quanta that are tried, of the largest that rounding alone would allow; cells beyond the fewest
 _QUANTA, _MORE_CELLS = (0.15, 0.25, 0.4, 0.5, 0.65, 0.8, 1.0), 3
-_NODES = 769  # at which plain pucks are fitted
-_OUT_OF_REACH = "no table to export keeps an error of {:.1e}: ask for a larger one"
+_OUT_OF_REACH = "no table to export keeps an error of {:.1e} in some function: ask for a larger tol"
 
 
 @dataclass(frozen=True)
@@ -55,22 +51,6 @@ class SplineFit:
     def rows(self) -> list[int]:
         """Where the rows of each side begin, and where all end."""
         return [0, *np.cumsum(np.array(self.cells) + self.degree).tolist()]
-
-
-def functions_of(table: StopTable) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """What is fitted, at the nodes: stop, curve and inverse, each (2, nodes, heights, functions).
-
-    Both sides from k = 0 to k = 1; the inverse on its own axis, that of the table.
-    """
-    n = table.axis.cells
-    sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]])
-    xi = np.linspace(0.0, 1.0, _NODES)
-    there = 1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))
-    along = make_interp_spline(np.linspace(0.0, 1.0, n + 1), np.moveaxis(sides, 1, 0), 5)
-    moved = np.moveaxis(along(there), 0, 1)
-    inverse = table.inverse.ratios(with_time=True)
-    # time, along, across, length, body; κR and S/δ
-    return moved[..., :5], moved[..., 5:7], inverse[..., None]
 
 
 def spline_fit(
@@ -155,7 +135,8 @@ class _Fits:
         by_power = (series_to_powers(powers) @ series[:powers]).reshape(powers, sides, nodes, -1)
         self._wanted = by_power.transpose(2, 1, 0, 3)  # nodes, sides, powers, functions
         self._at_heights = s ** np.arange(powers)[:, None]
-        self._sizes = [one for one in CELLS if one < nodes // 4]
+        # between fewer nodes a spline may err by more than at them
+        self._sizes = [one for one in CELLS if one <= nodes // 8]
         self._solved: dict[tuple[int, int], FloatArray] = {}
 
     def quanta(self, degree: int) -> list[float]:

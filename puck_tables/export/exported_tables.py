@@ -1,9 +1,8 @@
-"""The tables of a file: of plain pucks from what comes along, of all others made for them."""
+"""The tables of a file, made for its kind of puck."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
 from math import factorial
 
 import numpy as np
@@ -14,7 +13,6 @@ from puck_tables.errors import AccuracyError, InputError
 from puck_tables.export.compact_tables import (
     SplineFit,
     fit_constants,
-    functions_of,
     spline_fit,
     spline_fits,
 )
@@ -22,41 +20,19 @@ from puck_tables.export.law_values import REACH, LawValues, law_values
 from puck_tables.export.program.base_step import BASE_RULE
 from puck_tables.puck import Puck
 from puck_tables.stopping.lookup import height_polynomials
-from puck_tables.stopping.stop_table import StopTable
 
 Tables = tuple[dict[str, Sequence[float]], dict[str, float]]  # arrays, constants
 
-# Of the error asked for: of the functions of a stop, and of the curve and its inverse, so that what
-# is made of all of them keeps it (measured, tests/test_export.py).
-_STOP, _SIMILARITY, _CONSTANT = 0.5, 0.3, 0.02
-# the same under another pressure law
-_LAW_STOP, _LAW_MOTION, _LAW_PATCH, _LAW_CONSTANT = 0.42, 0.48, 0.22, 0.05
+# Of the error asked for: of the functions of a stop, of the orbits, of friction, and of what
+# depends on the height alone, so that what is made of all of them keeps it (measured,
+# tests/test_export.py and tests/test_export_laws.py).
+_STOP, _MOTION, _PATCH, _CONSTANT = 0.42, 0.48, 0.22, 0.05
 # of a slip that friction takes in a step, and so many times the least part of a base over its reach
 _SHARE, _FEET = 0.05, 8.0
 
 
-def plain_tables(parts: tuple[str, ...], tol: float) -> Tables:
-    """Homogeneous pucks under uniform pressure: from the stop table that comes along."""
-    constants = {"TALLEST": 1.0, "STEEP": 2.0, "SPIN_TIME": 0.75, "LONGEST": 2.0}
-    if parts == ("resultants",):
-        return {}, constants
-    return _written(_shipped(tol), constants)
-
-
-@lru_cache(maxsize=8)
-def _shipped(tol: float) -> dict[str, SplineFit]:
-    table = StopTable.shipped()
-    stops, parts, inverse = functions_of(table)
-    return {
-        "STOP": spline_fit(stops, _STOP * tol, haste=2),
-        "SIMILARITY": spline_fit(parts, _SIMILARITY * tol),
-        "INVERSE": spline_fit(inverse, _SIMILARITY * tol),
-        "CONSTANTS": fit_constants(table.constants, _CONSTANT * tol),
-    }
-
-
-def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
-    """Any other kind of puck: its stops are integrated for it."""
+def round_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
+    """Any puck on a round base."""
     values = law_values(kind.body.law, kind.gyration, tol)
     sides = values.extents.size
     constants = {
@@ -64,10 +40,9 @@ def law_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
         "SPIN_TIME": values.spin_time, "LONGEST": values.longest, "SIDES": sides,
     }  # fmt: skip
     tables, constants = _written(_fit_within(values, parts, tol), constants)
-    sign = np.where(np.arange(sides) % 2, -1.0, 1.0)
     lines = {
         "BORDERS": _short(values.borders), "ORIGINS": _short(values.origins),
-        "SCALES": _short(sign / values.extents),
+        "SCALES": _short(1.0 / values.extents),
     }  # fmt: skip
     if "state" in parts:
         constants |= {"REACH": REACH, "END": values.limit_motions.end}
@@ -79,13 +54,13 @@ def _fit_within(
     values: LawValues, parts: tuple[str, ...], tol: float
 ) -> dict[str, SplineFit | list[SplineFit]]:
     result: dict[str, SplineFit | list[SplineFit]] = {}
-    if "resultants" in parts:
-        result["PATCH"] = spline_fit(values.patch, _LAW_PATCH * tol)
+    if "resultants" in parts and values.law.name != "uniform":  # of that in closed form
+        result["PATCH"] = spline_fit(values.patch, _PATCH * tol)
     if parts != ("resultants",):
-        result["STOP"] = spline_fit(values.stops, _LAW_STOP * tol, haste=2)
+        result["STOP"] = spline_fit(values.stops, _STOP * tol, haste=2)
     if "state" in parts:
         try:
-            result["MOTION"] = spline_fits(values.limit_motions.parts, _LAW_MOTION * tol)
+            result["MOTION"] = spline_fits(values.limit_motions.parts, _MOTION * tol)
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
@@ -95,7 +70,7 @@ def _fit_within(
             ) from None
         of_heights = values.limit_motions.of_heights
         polynomials = height_polynomials(of_heights, len(of_heights)).T
-        result["CONSTANTS"] = fit_constants(polynomials, _LAW_CONSTANT * tol)
+        result["CONSTANTS"] = fit_constants(polynomials, _CONSTANT * tol)
     return result
 
 

@@ -1,9 +1,11 @@
-"""What is exported of pucks under a pressure law: their stops, friction and orbits, at nodes.
+"""What is exported of pucks on round bases: their stops, friction and orbits, at nodes.
 
 Places are those of c = (r|ω| − v)/(r|ω| + v) between *marks*: pure sliding, the lines where the
-centre of rotation crosses an edge of the load, pure spin.  Each mark has a side of its own up to
-the middle between it and the next, ξ⁴ = |c − mark|/extent.  Heights are a share of the largest
-under which the whole base stays loaded, :data:`puck_tables.contact.laws.Law.delta_max`.
+centre of rotation crosses an edge of the load, pure spin.  A side reaches from mark to mark, the
+first upwards, all others downwards: |c − origin| = extent · q², q = ξ (2 − ξ), with nodes close at
+both ends.  Friction is splined over q = 1 − (1 − ξ)⁴, closer still at the lines.  Heights are a
+share of the largest under which the whole base stays loaded,
+:data:`puck_tables.contact.laws.Law.delta_max`.
 
 All motions of a puck that slides and spins lie on two orbits, one from pure sliding and one from
 pure spin to the limit ratio.  With θ the logarithm of the time that is left,
@@ -25,6 +27,7 @@ from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from scipy.integrate import solve_ivp
 from scipy.interpolate import make_interp_spline
 
@@ -35,8 +38,10 @@ from puck_tables.contact.laws import Law
 from puck_tables.puck import Puck
 from puck_tables.stopping.lookup import heights
 from puck_tables.stopping.stop_section import stops_at
+from puck_tables.stopping.stop_table import StopTable
 
-NODES, HEIGHTS = 385, 14  # a side and over δ, to which the splines of a file are fitted
+HEIGHTS = 14  # over δ, to which the splines of a file are fitted
+_COARSE, _NODES, _FINE_NODES = 1e-8, 385, 1025  # of a side: finer errors take more cells
 REACH = 16.0  # of z, the scale along an orbit
 TURN_UNIT = 1.5  # of headings: they take less of the error than places on the orbits do
 _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for
@@ -97,6 +102,11 @@ class LawValues:
         """The largest δ."""
         return self.law.delta_max
 
+    @property
+    def xi(self) -> FloatArray:
+        """The nodes of a side (nodes,)."""
+        return np.linspace(0.0, 1.0, _NODES if self.tol > _COARSE else _FINE_NODES)
+
     @cached_property
     def marks(self) -> FloatArray:
         """C at the marks (m,)."""
@@ -104,19 +114,18 @@ class LawValues:
 
     @cached_property
     def extents(self) -> FloatArray:
-        """How far the sides reach from their marks (2 m − 2,), ascending."""
-        return np.repeat(0.5 * np.diff(self.marks), 2)
+        """How far the sides reach from their origins (m − 1,), ascending; negative: downwards."""
+        return np.diff(self.marks) * np.where(np.arange(self.marks.size - 1) > 0, -1.0, 1.0)
 
     @cached_property
     def origins(self) -> FloatArray:
-        """The mark of each side (2 m − 2,), ascending."""
-        return self.marks[(np.arange(self.extents.size) + 1) // 2]
+        """The mark from which each side is measured (m − 1,), ascending."""
+        return np.append(self.marks[:1], self.marks[2:])
 
     @cached_property
     def borders(self) -> FloatArray:
-        """C between the sides (2 m − 3,), ascending: marks and the middles between them."""
-        middles = 0.5 * (self.marks[1:] + self.marks[:-1])
-        return np.sort(np.append(middles, self.marks[1:-1]))
+        """C between the sides (m − 2,), ascending."""
+        return self.marks[1:-1]
 
     @cached_property
     def pucks(self) -> list[Puck]:
@@ -135,12 +144,9 @@ class LawValues:
         """More than any motion lasts, Q/J."""
         return max(2.0, *(puck.body.longest for puck in self.pucks))
 
-    @cached_property
-    def phi(self) -> FloatArray:
-        """Slip angles of the nodes (sides, nodes)."""
-        sides = np.arange(self.extents.size)
-        sign = np.where(sides % 2, -1.0, 1.0)
-        off = (sign * self.extents)[:, None] * np.linspace(0.0, 1.0, NODES) ** 4
+    def _angles(self, q: FloatArray) -> FloatArray:
+        """Slip angles (sides, nodes) at q (nodes,)."""
+        off = self.extents[:, None] * q**2
         c = self.origins[:, None] + off
         phi = np.arctan2(1.0 + c, 1.0 - c)
         # next to pure sliding and pure spin from the distance
@@ -151,27 +157,42 @@ class LawValues:
     @cached_property
     def patch(self) -> FloatArray:
         """p_a, p_b, p_d (sides, nodes, heights, 3), the same at all heights."""
-        p = self.law.integrals(self.phi.ravel())
-        patch = np.stack([p.a, p.b, p.d], axis=-1).reshape(*self.phi.shape, 1, 3)
-        return np.broadcast_to(patch, (*self.phi.shape, HEIGHTS, 3))
+        phi = self._angles(1.0 - (1.0 - self.xi) ** 4)
+        p = self.law.integrals(phi.ravel())
+        patch = np.stack([p.a, p.b, p.d], axis=-1).reshape(*phi.shape, 1, 3)
+        return np.broadcast_to(patch, (*phi.shape, HEIGHTS, 3))
 
     @cached_property
     def stops(self) -> FloatArray:
         """T, along, across/δ, path length and body angle (sides, nodes, heights, 5)."""
+        if self.pucks[0].body.is_plain:
+            return _of_plain(StopTable.shipped(), self.xi)
         accuracy = max(_FINEST, _SHARE * self.tol)
-        result = []
+        result, phi = [], self._angles(self.xi * (2.0 - self.xi))
         for puck in self.pucks:
             friction = puck.body.friction(0.1 * accuracy)
             section = friction.for_motion(puck.gyration)
-            stops = stops_at(puck.body, friction, section, self.phi.ravel(), accuracy)[:, :5]
+            stops = stops_at(puck.body, friction, section, phi.ravel(), accuracy)[:, :5]
             stops[:, 2] /= puck.delta
-            result.append(stops.reshape(*self.phi.shape, 5))
+            result.append(stops.reshape(*phi.shape, 5))
         return np.stack(result, axis=2)
 
     @cached_property
     def limit_motions(self) -> LimitMotions:
         """The two orbits, from pure sliding and from pure spin."""
         return _limit_motions(self)
+
+
+def _of_plain(table: StopTable, xi: FloatArray) -> FloatArray:
+    """The stops of plain pucks from the table that comes along."""
+    n = table.axis.cells
+    sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]], axis=1)[..., :5]
+    at_nodes = make_interp_spline(np.linspace(0.0, 1.0, n + 1), sides, 5)
+    known, wanted = (2.0 * heights(count) ** 2 - 1.0 for count in (sides.shape[2], HEIGHTS))
+    by_height = np.moveaxis(at_nodes(1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))), 2, 0)
+    series = chebyshev.chebfit(known, by_height.reshape(known.size, -1), known.size - 1)
+    values = chebyshev.chebval(wanted, series).T.reshape(HEIGHTS, *by_height.shape[1:])
+    return np.moveaxis(values, (0, 1), (2, 1))
 
 
 law_values = lru_cache(maxsize=8)(LawValues)  # one for all files of the same pucks and error
@@ -185,25 +206,23 @@ def _c(ratio: float) -> float:
 def _limit_motions(values: LawValues) -> LimitMotions:
     """The orbits of a law, from its marks and times to the stop."""
     law, inertia = values.law, values.pucks[0].body.inertia
-    marks, extents = values.marks, values.extents
+    marks = values.marks
     limits = np.array([_c(puck.limit_ratio) for puck in values.pucks])
     shares = heights(HEIGHTS)
-    xi = np.linspace(0.0, 1.0, NODES)
-    splines = [
-        [make_interp_spline(xi, side[:, j], 5) for j in range(HEIGHTS)]
-        for side in values.stops[..., 0]
-    ]
+    xi = values.xi
+    splines = [make_interp_spline(xi, side, 5) for side in values.stops[..., 0]]
 
     def time_at(u: FloatArray) -> FloatArray:
         small = np.exp(-np.abs(u))
         share = 2.0 * small / (1.0 + small)  # 1 − |c|
         c = np.where(u < 0.0, share - 1.0, 1.0 - share)
         sides = np.searchsorted(values.borders, c)
-        owner = (sides + 1) // 2
-        gap = np.where(sides == 0, share, np.abs(c - marks[owner]))
-        gap = np.where(sides == len(extents) - 1, share, gap)
-        place = np.sqrt(np.sqrt(np.minimum(gap / extents[sides], 1.0)))
-        return np.array([float(splines[s][j](place[j])) for j, s in enumerate(sides)])
+        gap = (c - values.origins[sides]) / values.extents[sides]
+        gap = np.where(sides == 0, share / values.extents[0], gap)
+        gap = np.where(sides == len(values.extents) - 1, -share / values.extents[-1], gap)
+        place = 1.0 - np.sqrt(1.0 - np.sqrt(np.clip(gap, 0.0, 1.0)))
+        at_all = np.stack([np.diagonal(spline(place)) for spline in splines])
+        return np.take_along_axis(at_all, sides[None], axis=0)[0]
 
     def friction(u: FloatArray) -> tuple[Resultants, FloatArray]:
         phi = np.where(u > 0.0, 0.5 * np.pi - np.arctan(np.exp(-u)), np.arctan(np.exp(u)))

@@ -1,49 +1,49 @@
-"""Where and when a launch stops, and its states on the way, of plain pucks.
+"""Where and when a launch stops, and its states on the way.
 
-A launch is measured in natural units; its place in the tables tells its stop.  States lie along the
-one curve that all motions are: the number N of :mod:`puck_tables.stopping.similarity_lookup` falls
-along a motion like a power of the time that is left; a table tells the slip from it.
+A launch is measured in natural units; its place in the tables tells its stop.  States lie on the
+two orbits that all motions of a kind of puck are (:mod:`puck_tables.export.law_values`): a launch
+is found on its orbit by secants, and its state where the logarithm of the time left has fallen.
 """
 
 from __future__ import annotations
 
-from math import cos, exp, expm1, log, log1p, nan, sin, sqrt
+from math import cos, exp, log, log1p, nan, sin, sqrt
 
-from puck_tables.export.program.intrinsics import Numbers, Out, Rows, room
+from puck_tables.export.program.intrinsics import Out, room
+from puck_tables.export.program.look_ups import (
+    END,
+    RATE_UNITS,
+    REACH,
+    STEEP,
+    TALLEST,
+    constant,
+    orbit_at,
+    stop_table_at,
+)
 
-# tables of one error: cells, degree, powers, quantum and numbers; all that stands here stands for
-# what a file is written with
-STOP: Numbers = ()
-STOP_ROWS: Rows = ()
-STOP_DEGREE, STOP_POWERS, STOP_QUANTUM = 1, 1, 1.0
-SIMILARITY: Numbers = ()
-SIMILARITY_ROWS: Rows = ()
-SIMILARITY_DEGREE, SIMILARITY_POWERS, SIMILARITY_QUANTUM = 1, 1, 1.0
-INVERSE: Numbers = ()
-INVERSE_ROWS: Rows = ()
-INVERSE_DEGREE, INVERSE_POWERS, INVERSE_QUANTUM = 1, 1, 1.0
-CONSTANTS: Numbers = ()
-CONSTANTS_POWERS, CONSTANTS_QUANTUM = 1, 1.0
-# the kind of puck: its largest delta, s = STEEP delta^2 - 1 from -1 to 1, how long pure spin lasts
-# and more than any motion does, in Q/J; and the error of a file
-TALLEST, STEEP, SPIN_TIME, LONGEST, TOLERANCE = 1.0, 2.0, 0.75, 2.0, 1.0
+# what a file is written with: how long pure spin lasts and more than any motion does, in Q/J; and
+# the error of a file
+SPIN_TIME, LONGEST, TOLERANCE = 0.75, 2.0, 1.0
 
-MOST_WEIGHTS, WIDEST = 8, 70  # room for any degree, and for any row, that a file is written with
 LARGEST = 8e307  # of places, and of places over radii
 SMALLEST = 1e-300  # its reciprocal is still a number
 TURN_SHARE = 1e-3  # of Q: where the turn of a heading is read off
 ROUNDS = 12  # of Newton's method at most
+SEARCH, FARTHEST = 40, 1e3  # secants at most; more than any z is, where shares are numbers
+CLOSE, FAINT = 0.01, 0.05  # of the error of a file: where a launch is found, from the limit
 # of a measured launch
 SLIP, SPEED, RIM, EAST, NORTH, SIDE, SHARE, AROUND = 0, 1, 2, 3, 4, 5, 6, 7
 MEASURED = 8  # the eight above
 # beside what is measured of a launch
-KAPPA, TURNING, LOG_N, SIGN, HEADING, T_LAUNCH = 8, 9, 10, 11, 12, 13
-KNOWN = 14  # with the six above
-# of a place on the curve
-THERE_SIDE, THERE_SHARE, REGULAR = 0, 1, 2
+FAST, THETA, HEADING, T_LAUNCH = 8, 9, 10, 11
+KNOWN = 12  # with the four above
+# of a place on an orbit
+THERE_SIDE, THERE_SHARE, THERE_HEADING = 0, 1, 2
 # of the functions of a stop
 TIME, ALONG, ACROSS, LENGTH, BODY = 0, 1, 2, 3, 4
-STOP_FUNCTIONS = 5  # T, X, Y, path, body angle
+# of the height alone: limit of c; c at theta = 0 of both orbits; rates and turnings over
+# delta/TALLEST in pure sliding, in pure spin and at the limit
+LIMIT, START, RATE, TURN = 0, 1, 3, 6
 
 
 def refused(out: Out, size: int, code: int) -> int:
@@ -102,58 +102,9 @@ def measured(
     return 0 if size < LARGEST and size < LARGEST * radius else 2
 
 
-def place_of(double_share: float) -> float:
-    """The place xi on the axis of the tables, from 2 min(v, r|w|)/(v + r|w|)."""
-    q: float = sqrt(double_share)
-    return 1.0 - sqrt(1.0 - q if q < 1.0 else 0.0)
-
-
-def look_up(
-    table: Numbers, first: int, cells: int, degree: int, powers: int, functions: int,
-    quantum: float, xi: float, s: float, out_row: Out,
-) -> None:  # fmt: skip
-    """The functions of a table, from its number first on, at a place and at a height s."""
-    w = room(MOST_WEIGHTS)
-    p: float = xi * cells
-    cell: int = int(p)
-    cell = cells - 1 if cell > cells - 1 else cell
-    t: float = p - cell
-    # uniform B-splines times the factorial of their degree, which the quantum takes out
-    w[0] = quantum
-    for d in range(1, degree + 1):
-        saved: float = 0.0
-        for r in range(d):
-            part: float = w[r]
-            w[r] = saved + (r + 1 - t) * part
-            saved = (t + (d - 1 - r)) * part
-        w[d] = saved
-    width: int = powers * functions
-    here: int = first + cell * width
-    row = room(WIDEST)
-    for j in range(width):
-        row[j] = w[0] * table[here + j]
-    for n in range(1, degree + 1):
-        for j in range(width):
-            row[j] += w[n] * table[here + n * width + j]
-    for f in range(functions):
-        value: float = row[width - functions + f]
-        for k in range(powers - 2, -1, -1):
-            value = value * s + row[k * functions + f]
-        out_row[f] = value
-
-
-def table_at(side: int, share: float, delta: float, f: Out) -> None:
-    """T, along, across, path length and body angle by look-up; side 1 where r|w| > v."""
-    look_up(
-        STOP, STOP_ROWS[side] * STOP_POWERS * STOP_FUNCTIONS,
-        STOP_ROWS[side + 1] - STOP_ROWS[side] - STOP_DEGREE, STOP_DEGREE, STOP_POWERS,
-        STOP_FUNCTIONS, STOP_QUANTUM, place_of(share), STEEP * delta * delta - 1.0, f,
-    )  # fmt: skip
-
-
 def stop_functions(side: int, share: float, delta: float, f: Out) -> None:
     """The functions of a stop: by look-up, in pure sliding and in pure spin exactly."""
-    table_at(side, share, delta, f)
+    stop_table_at(1.0 - share if side == 1 else share - 1.0, delta, f)
     if share == 0.0 and side == 0:
         f[TIME] = 1.0
         f[ALONG] = 0.5
@@ -195,110 +146,94 @@ def stop(
     return 0
 
 
-def constant(row: int, s: float) -> float:
-    """One of the numbers that depend on the height alone."""
-    total: float = 0.0
-    for m in range(CONSTANTS_POWERS - 1, -1, -1):
-        total = total * s + CONSTANTS[row * CONSTANTS_POWERS + m]
-    return CONSTANTS_QUANTUM * total
+def heading_at(end: int, theta: float, rate: float, delta: float, s: float, part: float) -> float:
+    """The heading on an orbit that comes from, or to, an end."""
+    regular: float = part * RATE_UNITS[end] / rate
+    return delta / TALLEST * (constant(TURN + end, s) * theta + regular)
 
 
-def slow_rate(delta: float) -> float:
-    """How fast pure sliding is left."""
-    return 0.5 + 0.125 * delta * delta
+def way_on(branch: int, z: float, s: float, wanted: float, f: Out) -> float:
+    """By how much z, the way from theta = 0, falls short, nearly: what is there falls like exp(-z).
 
-
-def fast_rate(delta: float) -> float:
-    """How fast pure spin is left."""
-    return (9.0 + 4.0 * delta * delta) / (36.0 + 4.0 * delta * delta)
-
-
-def regular_heading(
-    side: int, double_share: float, delta: float, turning: float, part: float
-) -> float:
-    """The heading, but for its part that goes with ln Q."""
-    small: float = log(double_share)
-    large: float = log1p(1.0 - double_share)
-    plus: float = large if side == 1 else small
-    minus: float = small if side == 1 else large
-    spin_turn: float = 9.0 * delta / (36.0 + 4.0 * delta * delta)
-    return (
-        turning / slow_rate(delta) * plus
-        + (turning - spin_turn) / fast_rate(delta) * minus
-        + delta * part
-    )
-
-
-def similarity_at(side: int, share: float, s: float, out_row: Out) -> None:
-    """The regular parts of ln N and of the heading."""
-    look_up(
-        SIMILARITY, SIMILARITY_ROWS[side] * SIMILARITY_POWERS * 2,
-        SIMILARITY_ROWS[side + 1] - SIMILARITY_ROWS[side] - SIMILARITY_DEGREE, SIMILARITY_DEGREE,
-        SIMILARITY_POWERS, 2, SIMILARITY_QUANTUM, place_of(share), s, out_row,
-    )  # fmt: skip
+    Pieces 0 and 2 hold share exp(z) in its stead.
+    """
+    orbit_at(branch, z, s, f)
+    found: float = -f[0] if branch == 1 else f[0]
+    if not found > 0.0:  # so near the limit the table does not tell the side
+        return -1.0
+    return log(found / wanted) - (z if branch == 0 or branch == 2 else 0.0)
 
 
 def know(delta: float, time: float, launch: Out) -> None:
-    """What the curve says of a measured launch that both slides and spins; ``time``: its T."""
-    c = room(2)
-    s: float = 2.0 * delta * delta - 1.0
-    side: int = int(launch[SIDE])
-    share: float = launch[SHARE]
-    similarity_at(side, share, s, c)
-    share = share if share > SMALLEST else SMALLEST
-    limit: float = constant(0, s)
-    kappa: float = constant(1, s)
-    turning: float = delta * constant(2, s)
-    small: float = log(share)
-    large: float = log1p(1.0 - share)
-    plus: float = large if side == 1 else small
-    minus: float = small if side == 1 else large
-    place: float = 1.0 - share if side == 1 else share - 1.0
-    gap: float = abs((place - limit) / limit)
-    gap = gap if gap > SMALLEST else SMALLEST
-    launch[KAPPA] = kappa
-    launch[TURNING] = turning
-    launch[SIGN] = 1.0 if place > limit else -1.0
-    launch[LOG_N] = (
-        log(gap)
-        - kappa * (plus / slow_rate(delta) + minus / fast_rate(delta))
-        + kappa * (log(time) - constant(3, s))
-        + c[0]
-    )
-    launch[HEADING] = regular_heading(side, share, delta, turning, c[1])
+    """Where on its orbit a measured launch is that both slides and spins; ``time``: its T."""
+    f = room(2)
+    s: float = STEEP * delta * delta - 1.0
+    c: float = 1.0 - launch[SHARE] if launch[SIDE] == 1.0 else launch[SHARE] - 1.0
+    limit: float = constant(LIMIT, s)
+    fast: int = 1 if c > limit else 0
+    start: float = constant(START + fast, s)
+    ahead: int = 1 if (c < start if fast == 1 else c > start) else 0
+    wanted: float = abs(c - limit)
+    first: float = abs(start - limit)
+    least: float = FAINT * TOLERANCE
+    if ahead == 0:
+        wanted = launch[SHARE] if launch[SIDE] == fast else 2.0 - launch[SHARE]
+        first = 1.0 - start if fast == 1 else 1.0 + start
+        least = SMALLEST
+    wanted = wanted if wanted > least else least
+    close: float = CLOSE * TOLERANCE / (wanted if ahead == 1 else 1.0)
+    branch: int = 2 * fast + ahead
+    low: float = 0.0
+    high: float = REACH * END * END / (1.0 - END) if ahead == 1 else FARTHEST
+    before: float = log(first / wanted) if first > wanted else 0.0
+    z: float = before if before < high else high
+    error: float = way_on(branch, z, s, wanted, f)
+    slope: float = (error - before) / z if z > 0.0 else -1.0
+    n: int = 0
+    while n < SEARCH and abs(error) > close:
+        low = z if error > 0.0 else low
+        high = high if error > 0.0 else z
+        slope = slope if slope < 0.0 else -1.0
+        last: float = z
+        before = error
+        z = z - error / slope
+        z = z if z >= low and z <= high else 0.5 * (low + high)
+        error = way_on(branch, z, s, wanted, f)
+        slope = (error - before) / (z - last) if z != last else -1.0
+        n = n + 1
+    end: int = 2 if ahead == 1 else fast
+    rate: float = constant(RATE + end, s)
+    theta: float = -z / rate if ahead == 1 else z / rate
+    launch[FAST] = fast
+    launch[THETA] = theta
+    launch[HEADING] = heading_at(end, theta, rate, delta, s, f[1])
     launch[T_LAUNCH] = time
 
 
 def arrive(launch: Out, delta: float, log_left: float, place: Out, f: Out) -> None:
-    """The place on the curve and the functions of a stop there, from the time that is left."""
-    c = room(2)
-    s: float = 2.0 * delta * delta - 1.0
-    sign: float = launch[SIGN]
-    log_n: float = launch[LOG_N] + launch[KAPPA] * log_left
-    side: int = 0 if sign < 0.0 and log_n >= 0.0 else 1
-    log_y: float = 0.0
-    if side == 0:
-        log_y = -slow_rate(delta) / launch[KAPPA] * log_n
-    elif sign > 0.0 and log_n > 1.0:
-        log_y = -fast_rate(delta) / launch[KAPPA] * (log_n + log1p(2.0 * exp(-log_n)))
-    else:
-        log_y = -fast_rate(delta) / launch[KAPPA] * log1p(1.0 + sign * exp(log_n))
-    y: float = exp(log_y)
-    rest: float = -expm1(0.25 * log_y)
-    xi: float = 1.0 - sqrt(rest if rest > 0.0 else 0.0)
-    look_up(
-        INVERSE, INVERSE_ROWS[side] * INVERSE_POWERS,
-        INVERSE_ROWS[side + 1] - INVERSE_ROWS[side] - INVERSE_DEGREE, INVERSE_DEGREE,
-        INVERSE_POWERS, 1, INVERSE_QUANTUM, xi, s, c,
-    )  # fmt: skip
-    share: float = y * c[0]
-    share = 1.0 if share > 1.0 else share
-    share = share if share > SMALLEST else SMALLEST
-    stop_functions(side, share, delta, f)
-    similarity_at(side, share, s, c)
+    """The place on the orbit and the functions of a stop there, from the time that is left."""
+    o = room(2)
+    s: float = STEEP * delta * delta - 1.0
+    theta: float = launch[THETA] + log_left
+    fast: int = int(launch[FAST])
+    ahead: int = 1 if theta < 0.0 else 0
+    end: int = 2 if ahead == 1 else fast
+    rate: float = constant(RATE + end, s)
+    z: float = abs(theta) * rate
+    orbit_at(2 * fast + ahead, z, s, o)
+    c: float = constant(LIMIT, s) + o[0]
+    share: float = 1.0 - abs(c)
+    side: int = 1 if c > 0.0 else 0
+    if ahead == 0:
+        share = o[0] * exp(-z)
+        side = fast if share <= 1.0 else 1 - fast
+        share = share if share <= 1.0 else 2.0 - share
+    if share < 0.0:
+        share = 0.0
     place[THERE_SIDE] = side
     place[THERE_SHARE] = share
-    place[REGULAR] = regular_heading(side, share, delta, launch[TURNING], c[1])
+    place[THERE_HEADING] = heading_at(end, theta, rate, delta, s, o[1])
+    stop_functions(side, share, delta, f)
 
 
 def state(
@@ -344,9 +279,7 @@ def state(
     unit: float = fall / sqrt(small * small + large * large)
     now: float = unit * (small if place[THERE_SIDE] == 1.0 else large)
     turn: float = unit * (large if place[THERE_SIDE] == 1.0 else small)
-    heading: float = 0.0
-    if delta > 0.0:
-        heading = around * (launch[TURNING] * log(fall) + place[REGULAR] - launch[HEADING])
+    heading: float = around * (place[THERE_HEADING] - launch[HEADING])
     cosine: float = cos(heading)
     sine: float = sin(heading)
     east: float = (cosine * launch[EAST] - sine * launch[NORTH]) / launch[SPEED]
@@ -385,6 +318,5 @@ def turn(
     for _ in range(ROUNDS):  # T changes little: each round takes an error to a tenth or less
         arrive(launch, delta, log(left), place, g)
         left = TURN_SHARE * g[TIME] / launch[T_LAUNCH]
-    heading: float = launch[TURNING] * log(TURN_SHARE) + place[REGULAR] - launch[HEADING]
-    out[0] = launch[AROUND] * heading
+    out[0] = launch[AROUND] * (place[THERE_HEADING] - launch[HEADING])
     return 0
