@@ -253,9 +253,8 @@ def _wide(deviations: list[FloatArray], usual: float) -> float:
 
 
 def _noise(
-    problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float],
-    kept: Mask,
-) -> tuple[tuple[float, float], float]:  # fmt: skip
+    problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float], kept: Mask
+) -> tuple[tuple[float, float], float]:
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter.
 
     It is no smaller than motions are known, whose errors are no noise: of a film that was computed
@@ -309,8 +308,8 @@ def freedom(result: Estimate) -> float:
 
 
 def likeliest(
-    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray, rates:
-    FloatArray, kept: Mask, share: float,
+    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray,
+    rates: FloatArray, kept: Mask, share: float,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise of places and angles, and σ_t, under which residuals are most likely.
 

@@ -224,10 +224,10 @@ class FitSpec:
         return {**numbers, **follows}
 
     def slopes(self, result: Mapping[str, float], name: str) -> tuple[float, float, float]:
-        """The derivatives of J, δ and r to one that is found, by the complex step."""
+        """The derivatives of δ, J and r to one that is found, by the complex step."""
         complex_values = {**result, name: result[name] + 1j * TINY}
         decel, delta, radius = ((one + 0j).imag / TINY for one in self.scales(complex_values))
-        return decel, delta, radius
+        return delta, decel, radius
 
     def alone(self) -> FitSpec:
         """What is asked without numbers of impacts: of slides that nothing joins."""

@@ -312,9 +312,8 @@ def split(
 
 
 def predicted(
-    part: Estimate, certainty: Certainty, films: tuple[Observations, ...],
-    later: tuple[Mask, ...],
-) -> HeldOut:  # fmt: skip
+    part: Estimate, certainty: Certainty, films: tuple[Observations, ...], later: tuple[Mask, ...]
+) -> HeldOut:
     """How far the frames held out are from their predictions."""
     whole = part.problem.with_films(films).with_noise(part.problem.noise, part.x)
     rows, slopes = whole.residuals_and_jacobian(part.x)

@@ -115,14 +115,19 @@ def _placed(launch: FloatArray, states: FloatArray) -> FloatArray:
 def _path(moving: Moving, launch: FloatArray, times: FloatArray, want: bool) -> Sloped:
     """States from (0, 0) on, and derivatives if they are wanted."""
     c, at = moving.drag, moving.arguments(launch)
-    moving = moving._replace(motions=moving.motions.facing(launch[5]))
+    motions = moving.motions.facing(launch[5])
     if not at[:3].any():
         return np.zeros((6, times.size)), np.zeros((times.size, 6, 7))
+    grid = sooner = times
+    if c != 0.0:
+        grid = np.union1d(times, np.linspace(0.0, float(times.max(initial=0.0)), _MOMENTS))
+        sooner = np.expm1(c * grid) / c
+    if want:
+        states, slopes = motions.states_and_slopes(at, sooner)
+    else:
+        states, slopes = motions.states(at[:, None], sooner[None])[:, 0], np.empty((0, 6, 7))
     if c == 0.0:
-        return _without_drag(moving, at, times, want)
-    end = float(times.max(initial=0.0))
-    grid = np.union1d(times, np.linspace(0.0, end, _MOMENTS))
-    states, slopes = _without_drag(moving, at, np.expm1(c * grid) / c, want)
+        return states, slopes
     slower, step, where = np.exp(-c * grid), np.diff(grid), np.searchsorted(grid, times)
 
     def dragged(rows: FloatArray) -> FloatArray:
@@ -142,12 +147,6 @@ def _path(moving: Moving, launch: FloatArray, times: FloatArray, want: bool) -> 
     out[:, PLACE, TIME] = moved[RATE].T
     out[:, RATE, TIME] = slopes[where, RATE, TIME] - c * moved[RATE].T
     return moved, out
-
-
-def _without_drag(moving: Moving, at: FloatArray, times: FloatArray, want: bool) -> Sloped:
-    if want:
-        return moving.motions.states_and_slopes(at, times)
-    return moving.motions.states(at[:, None], times[None])[:, 0], np.empty((0, 6, 7))
 
 
 def _by_speed(

@@ -279,9 +279,8 @@ def speed_paths(
 
 
 def _at_times(
-    states: FloatArray, radius: FloatArray, times: FloatArray,
-    drifts: tuple[FloatArray, FloatArray],
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    states: FloatArray, radius: FloatArray, times: FloatArray, drifts: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
     """Between steps (n, m, 7), by cubics; ``drifts``: of the belt, (m, 3, n) each."""
     known, time = states[:, :, X : TURN + 1], states[:, :, TIME]
     speeds = states[:, :, : RIM + 1] / np.stack([1.0 + 0.0 * radius, 1.0 + 0.0 * radius, radius], 1)
