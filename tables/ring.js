@@ -466,7 +466,7 @@ function constant(row, s) {
 	return CONSTANTS_QUANTUM * total;
 }
 /* C less its limit, on pieces 0 and 2 share exp(z); and the regular part of the heading. */
-function orbit_at(branch, z, s, out_row) {
+function limit_motion_at(branch, z, s, out_row) {
 	let part = z / REACH;
 	let xi = 0.5 * (Math.sqrt(part * (part + 4.0)) - part) / END;
 	let powers = MOTION_POWERS[branch];
@@ -476,11 +476,11 @@ function orbit_at(branch, z, s, out_row) {
 /* By how much z, the way from theta = 0, falls short, nearly: what is there falls like exp(-z).
 
 Pieces 0 and 2 hold share exp(z) in its stead. */
-function way_on(branch, z, s, wanted, f) {
-	orbit_at(branch, z, s, f);
-	let found = branch == 1 ? -f[0] : f[0];
-	if (!(found > 0.0)) return -1.0;
-	return Math.log(found / wanted) - (branch == 0 || branch == 2 ? z : 0.0);
+function falls_short(branch, z, s, wanted, f) {
+	limit_motion_at(branch, z, s, f);
+	let there = branch == 1 ? -f[0] : f[0];
+	if (!(there > 0.0)) return -1.0;
+	return Math.log(there / wanted) - (branch == 0 || branch == 2 ? z : 0.0);
 }
 /* The heading on an orbit that comes from, or to, an end. */
 function heading_at(end, theta, rate, delta, s, part) {
@@ -512,7 +512,7 @@ function know(delta, time, launch) {
 	let high = ahead == 1 ? REACH * END * END / (1.0 - END) : FARTHEST;
 	let before = first > wanted ? Math.log(first / wanted) : 0.0;
 	let z = before < high ? before : high;
-	let error = way_on(branch, z, s, wanted, f);
+	let error = falls_short(branch, z, s, wanted, f);
 	let slope = z > 0.0 ? (error - before) / z : -1.0;
 	let n = 0;
 	while (n < 40 && Math.abs(error) > close) {
@@ -523,7 +523,7 @@ function know(delta, time, launch) {
 		before = error;
 		z = z - error / slope;
 		z = z >= low && z <= high ? z : 0.5 * (low + high);
-		error = way_on(branch, z, s, wanted, f);
+		error = falls_short(branch, z, s, wanted, f);
 		slope = z != last ? (error - before) / (z - last) : -1.0;
 		n = n + 1;
 	}
@@ -546,7 +546,7 @@ function arrive(launch, delta, log_left, place, f) {
 	let end = ahead == 1 ? 2 : fast;
 	let rate = constant(3 + end, s);
 	let z = Math.abs(theta) * rate;
-	orbit_at(2 * fast + ahead, z, s, o);
+	limit_motion_at(2 * fast + ahead, z, s, o);
 	let c = constant(0, s) + o[0];
 	let share = 1.0 - Math.abs(c);
 	let side = c > 0.0 ? 1 : 0;

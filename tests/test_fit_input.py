@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 
+import film_judge
 import numpy as np
 import pytest
 from rarely import thorough
@@ -15,10 +16,10 @@ from puck_tables.fitting.estimate import estimate
 from puck_tables.fitting.numbers import Number
 
 TIMES = np.arange(60) / 60.0
-PATH = pt.Puck(radius=0.04, height=0.02, friction=0.2).states((1.0, 0.2), 30.0, TIMES)
+PATH = film_judge.path((1.0, 0.2), 30.0, 0.2 * film_judge.G, 0.2, 0.04, TIMES)
 NOISE = 3e-4 * np.random.default_rng(0).normal(size=(60, 2))
-PLACE = np.stack([PATH.x, PATH.y], axis=1) + NOISE
-TRACK = pt.Track(TIMES, PLACE, PATH.orientation + 3.0 * NOISE[:, 0], "film")
+PLACE = PATH[:2].T + NOISE
+TRACK = pt.Track(TIMES, PLACE, PATH[2] + 3.0 * NOISE[:, 0], "film")
 PUCK = pt.Puck(radius=0.04)
 
 
@@ -271,7 +272,7 @@ def test_angles_the_other_way_are_found_out_after_a_hand():
 
 
 def test_two_marks_on_one_puck_are_no_two_pucks():
-    turned = PATH.orientation
+    turned = PATH[2]
     away = 0.015 * np.stack([np.cos(turned), np.sin(turned)], axis=1)
     red, blue = (pt.Track(TIMES, PLACE + side * away, name=name)
                  for side, name in ((1.0, "a.csv: red"), (-1.0, "a.csv: blue")))  # fmt: skip

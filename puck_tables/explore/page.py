@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables.export.languages import LANGUAGES
-from puck_tables.export.program import base_step, motion, resultant_formulas
+from puck_tables.export.program import base_step, launch_motion, resultant_formulas
 from puck_tables.export.source import export_source, functions_of, with_callees
 
 TOL = 1e-6  # of Q/J, Q²/J: finer than a screen shows
@@ -76,7 +76,7 @@ def _look_ups(law: ShownLaw) -> str:
 def _friction_of_bases() -> str:
     """``puckBase(sides, count, area, farthest)``: ``wrench`` of exported files, of any polygon."""
     language = LANGUAGES["js"]
-    modules = (motion, resultant_formulas, base_step)
+    modules = (launch_motion, resultant_formulas, base_step)
     functions = {node.name: node for module in modules for node in functions_of(module)}
     of_base = ("BASE_SIDES", "BASE_COUNT", "BASE_AREA", "BASE_FARTHEST")
     nodes, weights = np.polynomial.legendre.leggauss(base_step.BASE_RULE)

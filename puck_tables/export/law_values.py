@@ -90,7 +90,7 @@ class LawValues:
     >>> from puck_tables.contact.laws import law_of
     >>> values = LawValues(law_of("annulus:0.8"), 1.0, 1e-4)
     >>> round(values.tallest, 12), values.patch.shape
-    (1.64, (6, 385, 14, 3))
+    (1.64, (3, 385, 14, 3))
     """
 
     law: Law

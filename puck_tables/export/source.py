@@ -21,8 +21,8 @@ from puck_tables.export.languages import LANGUAGES
 from puck_tables.export.licence import LICENCE
 from puck_tables.export.program import (
     base_step,
+    launch_motion,
     look_ups,
-    motion,
     resultant_formulas,
     self_check,
 )
@@ -232,7 +232,13 @@ def _text(
 ) -> str:  # fmt: skip
     """The whole file."""
     language, based = LANGUAGES[key], kind.shape is not None
-    modules = [look_ups, motion, resultant_formulas, *([base_step] if based else []), self_check]
+    modules = [
+        look_ups,
+        launch_motion,
+        resultant_formulas,
+        *([base_step] if based else []),
+        self_check,
+    ]
     public = list(dict.fromkeys(name for part in parts for name in PARTS[part]))
     functions = {node.name: node for module in modules for node in functions_of(module)}
     looked_up = functions.pop("looked_up_integrals")

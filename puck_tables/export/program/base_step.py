@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cos, log, sin, sqrt
 
 from puck_tables.export.program.intrinsics import Numbers, Out, room
-from puck_tables.export.program.motion import refused
+from puck_tables.export.program.launch_motion import refused
 from puck_tables.export.program.resultant_formulas import HALF_PI, shape_integrals
 
 # what the program of a file is given: sides (where each begins, from the centre of mass, its unit

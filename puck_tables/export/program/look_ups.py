@@ -110,7 +110,7 @@ def looked_up_integrals(ratio: float, fast: bool, p: Out) -> None:
     )  # fmt: skip
 
 
-def orbit_at(branch: int, z: float, s: float, out_row: Out) -> None:
+def limit_motion_at(branch: int, z: float, s: float, out_row: Out) -> None:
     """C less its limit, on pieces 0 and 2 share exp(z); and the regular part of the heading."""
     part: float = z / REACH
     xi: float = 0.5 * (sqrt(part * (part + 4.0)) - part) / END

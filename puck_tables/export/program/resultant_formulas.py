@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 
 from puck_tables.export.program.intrinsics import Out, room
+from puck_tables.export.program.launch_motion import refused
 from puck_tables.export.program.look_ups import TALLEST
-from puck_tables.export.program.motion import refused
 
 MOST_STEPS = 9  # of the arithmetic-geometric mean, each of which doubles its digits
 HALF_PI = 0.5 * pi  # of φ and θ: pure spin

@@ -6,7 +6,7 @@ from math import sqrt
 
 from puck_tables.export.program.base_step import BASE_SQUARE, STEP_ERROR
 from puck_tables.export.program.intrinsics import Numbers
-from puck_tables.export.program.motion import TOLERANCE
+from puck_tables.export.program.launch_motion import TOLERANCE
 
 
 def misses(got: float, wanted: float, unit: float) -> int:

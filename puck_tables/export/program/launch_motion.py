@@ -17,7 +17,7 @@ from puck_tables.export.program.look_ups import (
     STEEP,
     TALLEST,
     constant,
-    orbit_at,
+    limit_motion_at,
     stop_table_at,
 )
 
@@ -152,16 +152,16 @@ def heading_at(end: int, theta: float, rate: float, delta: float, s: float, part
     return delta / TALLEST * (constant(TURN + end, s) * theta + regular)
 
 
-def way_on(branch: int, z: float, s: float, wanted: float, f: Out) -> float:
+def falls_short(branch: int, z: float, s: float, wanted: float, f: Out) -> float:
     """By how much z, the way from theta = 0, falls short, nearly: what is there falls like exp(-z).
 
     Pieces 0 and 2 hold share exp(z) in its stead.
     """
-    orbit_at(branch, z, s, f)
-    found: float = -f[0] if branch == 1 else f[0]
-    if not found > 0.0:  # so near the limit the table does not tell the side
+    limit_motion_at(branch, z, s, f)
+    there: float = -f[0] if branch == 1 else f[0]
+    if not there > 0.0:  # so near the limit the table does not tell the side
         return -1.0
-    return log(found / wanted) - (z if branch == 0 or branch == 2 else 0.0)
+    return log(there / wanted) - (z if branch == 0 or branch == 2 else 0.0)
 
 
 def know(delta: float, time: float, launch: Out) -> None:
@@ -187,7 +187,7 @@ def know(delta: float, time: float, launch: Out) -> None:
     high: float = REACH * END * END / (1.0 - END) if ahead == 1 else FARTHEST
     before: float = log(first / wanted) if first > wanted else 0.0
     z: float = before if before < high else high
-    error: float = way_on(branch, z, s, wanted, f)
+    error: float = falls_short(branch, z, s, wanted, f)
     slope: float = (error - before) / z if z > 0.0 else -1.0
     n: int = 0
     while n < SEARCH and abs(error) > close:
@@ -198,7 +198,7 @@ def know(delta: float, time: float, launch: Out) -> None:
         before = error
         z = z - error / slope
         z = z if z >= low and z <= high else 0.5 * (low + high)
-        error = way_on(branch, z, s, wanted, f)
+        error = falls_short(branch, z, s, wanted, f)
         slope = (error - before) / (z - last) if z != last else -1.0
         n = n + 1
     end: int = 2 if ahead == 1 else fast
@@ -220,7 +220,7 @@ def arrive(launch: Out, delta: float, log_left: float, place: Out, f: Out) -> No
     end: int = 2 if ahead == 1 else fast
     rate: float = constant(RATE + end, s)
     z: float = abs(theta) * rate
-    orbit_at(2 * fast + ahead, z, s, o)
+    limit_motion_at(2 * fast + ahead, z, s, o)
     c: float = constant(LIMIT, s) + o[0]
     share: float = 1.0 - abs(c)
     side: int = 1 if c > 0.0 else 0
