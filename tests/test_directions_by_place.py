@@ -1,4 +1,4 @@
-"""Strips and patches that are rougher one way than the other: a judge, known answers, refusals."""
+"""Friction by direction, by slip speed or by both on strips and patches: a judge, known answers."""
 
 from __future__ import annotations
 
@@ -24,9 +24,27 @@ WOOD = pt.Orthotropic((0.1, 0.35), 0.7)
 SOLE = pt.Orthotropic((0.3, 0.12), -0.4, fixed_to="body")
 FELT = pt.Orthotropic((0.25, 0.15), 2.0)
 STRIBECK = pt.StribeckLaw(0.3, 0.1, speed=0.3)
+STEEP = pt.CurlingLaw(0.02, 0.1, 0.05)
 KINKED = ((0.0, 0.3), (0.2, 0.35), (0.4, 0.15), (90.0, 0.15))
 ICY = pt.Orthotropic((1.0, 0.4), 0.7, law=STRIBECK)
 GROOVED = pt.Orthotropic((0.3, 1.1), -0.4, fixed_to="body", law=KINKED)
+
+
+HOOK = [(0.0, 0.0), (0.09, -0.02), (0.08, 0.05), (0.03, 0.03), (0.02, 0.09)]
+# where rays are cut: next to slip zero laws bend most
+BENDS = {STRIBECK: [0.2, 0.7, 2.0], STEEP: [0.03, 0.1, 0.3, 1.0], KINKED: [0.2, 0.4]}
+
+
+def law_of(one: Any) -> Any:
+    """What goes by the slip speed in a friction, or nothing."""
+    return one.law if isinstance(one, pt.Orthotropic) else None if isinstance(one, float) else one
+
+
+def in_hook(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    within = np.zeros(x.shape, bool)
+    for (ax, ay), (bx, by) in zip(HOOK, HOOK[1:] + HOOK[:1], strict=True):
+        within ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+    return within
 
 
 def axes_of(one: Any, turn: float) -> float:
@@ -36,9 +54,11 @@ def axes_of(one: Any, turn: float) -> float:
 def friction_on(one: Any, turn: float, ex: np.ndarray, ey: np.ndarray, slip: np.ndarray) -> Any:
     if isinstance(one, float):
         return one * ex, one * ey
+    law = pt.SpeedLaw(*zip(*KINKED, strict=True)) if law_of(one) == KINKED else law_of(one)
+    f = law(slip) if law else 1.0
+    if not isinstance(one, pt.Orthotropic):
+        return f * ex, f * ey
     tx, ty = by_ellipse(one.friction, axes_of(one, turn), ex, ey)
-    f = 1.0 if not one.law else pt.SpeedLaw(*zip(*KINKED, strict=True))(slip)
-    f = STRIBECK(slip) if one.law == STRIBECK else f
     return f * tx, f * ty
 
 
@@ -58,14 +78,16 @@ class Judge:
             place, angle = self.cut
             place -= px * math.cos(angle) + py * math.sin(angle)
             curves.append(border(angle, place))
-        if self.patch is not None:
+        if self.patch is not None and self.patch.corners:
+            curves += sides([(x - px, y - py) for x, y in HOOK])
+        elif self.patch is not None:
             (mx, my), radius = self.patch.centre, self.patch.radius
             curves.append((mx - px, my - py, radius))
         own = [*self.strips, *([] if self.patch is None else [self.patch.friction])]
-        laws = [one for one in own if not isinstance(one, float) and one.law]
-        speeds = [0.2, 0.4] if any(one.law == KINKED for one in laws) else []
-        speeds += [0.2, 0.7, 2.0] if STRIBECK in [one.law for one in laws] else []
-        bent = where_it_bends(velocity, speeds, [axes_of(one, turn) for one in laws])
+        laws = [one for one in own if law_of(one)]
+        speeds = [speed for one in laws for speed in BENDS[law_of(one)]]
+        axes = [axes_of(one, turn) for one in laws if isinstance(one, pt.Orthotropic)]
+        bent = where_it_bends(velocity, speeds, axes)
         curves = [*bent, *curves] if laws else curves
 
         def inside(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -80,7 +102,9 @@ class Judge:
             if self.cut is not None:
                 beyond = x * math.cos(angle) + y * math.sin(angle) > place
                 choice.append((beyond, self.strips[1]))
-            if self.patch is not None:
+            if self.patch is not None and self.patch.corners:
+                choice.append((in_hook(x + px, y + py), self.patch.friction))
+            elif self.patch is not None:
                 choice.append((np.hypot(x - mx + px, y - my + py) < radius, self.patch.friction))
             for where, one in choice:
                 ox, oy = friction_on(one, turn, ex, ey, slip)
@@ -101,6 +125,9 @@ FLOORS: dict[str, tuple[list[Any], Any]] = {
     "grooves on ice, a number around them": ([GROOVED, ICY], pt.Patch(0.2, (-0.05, 0.0), 0.04)),
     "grooves": ([GROOVED], None),
     "a patch of grooves on wood": ([WOOD], pt.Patch(GROOVED, (0.03, 0.01), 0.04)),
+    "a law beside a number": ([STRIBECK, 0.2], None),
+    "a law beside another": ([STEEP, STRIBECK], None),
+    "a hook of one law in another": ([STRIBECK], pt.Patch(STEEP, corners=HOOK)),
 }
 
 
@@ -110,6 +137,8 @@ def floor_of(strips: list[Any], patch: Any) -> pt.Floor:
         own = strips[0]
         if isinstance(own, float):
             return pt.Floor(patches=patches)
+        if own == STRIBECK:
+            return pt.Floor(law=own, patches=patches)
         return pt.Floor(orthotropic=own, patches=patches)
     return pt.Floor(strips=pt.Strips((0.02,), tuple(strips), direction=0.3), patches=patches)
 
@@ -137,6 +166,8 @@ def test_friction_is_that_of_points_on_rays(seed, name, shape, height):
 
 MOTIONS = [("a sole on half of it, felt on the other", "round", 0.03),
            ("ice", "round", 0.03),
+           thorough("a law beside another", "round", 0.0),
+           thorough("a law beside a number", "round", 0.0),
            thorough("felt in a sole beside wood", "box", 0.02),
            thorough("grooves", "box", 0.0)]  # fmt: skip
 
