@@ -237,32 +237,6 @@ def test_a_patch_holds_by_the_friction_along_the_slope(shape: str) -> None:
             assert (run.end == "at rest") == rests, (direction, off)
 
 
-@pytest.mark.parametrize(
-    ("shape", "height", "wood"),
-    [thorough("box", 0.0, WOOD), thorough("round", 0.03, WOOD), ("round", 0.0, ICY)],
-)
-def test_axes_of_a_turntable_turn_with_it(shape: str, height: float, wood: Any) -> None:
-    thrown, turning, cx = body(shape, height), 2.5, 0.1
-    inertia = thrown.inertia_radius**2 * thrown.mass
-
-    def rates(t: float, y: np.ndarray) -> list[float]:
-        now = replace(wood, direction=wood.direction + turning * t)
-        ux, uy = y[3] + turning * y[1], y[4] - turning * (y[0] - cx)
-        state = [0.0, 0.0, y[2], ux, uy, y[5] - turning]
-        fx, fy, torque = Judge(shape, [now], None, height).forces(state, 2)
-        return [*y[3:], fx, fy, torque / inertia]
-
-    start, times = [-0.1, 0.02, 0.3, 0.45, -0.1, 7.0], [0.2, 0.4, 0.8]
-    truth = solve_ivp(rates, (0.0, 0.8), start, "DOP853", times, rtol=1e-11, atol=1e-12).y
-    launch = pt.Launch((0.45, -0.1), spin=7.0, position=(-0.1, 0.02), orientation=0.3)
-    floor = pt.Floor(orthotropic=wood, turning=turning, centre=(cx, 0.0))
-    run = pt.Scene(thrown, floor, launch, time=1.0, tol=1e-10).simulate(times)
-    for key, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
-        unit = 1.0 / ROUND if key in ("orientation", "spin") else 1.0
-        assert run.columns[key] == pytest.approx(row, abs=2e-9 * unit), key
-    assert run.energy_residual < 1e-9
-
-
 @pytest.mark.parametrize("shape", ["box", "round"])
 def test_a_turntable_carries_what_its_ellipse_holds(shape: str) -> None:
     """Radially by f along the axis that lies so under it, wherever that has turned to."""
@@ -279,17 +253,25 @@ def test_a_turntable_carries_what_its_ellipse_holds(shape: str) -> None:
 
 # of a tray: t, velocity and spin; it is as at first until 0.1, and its spin jumps at no time
 TRAY = np.array([[0.1, 0.1, 0.0, 2.0], [0.4, -0.2, 0.3, 4.0], [0.9, 0.1, 0.3, -1.0]])
+TURNTABLE = np.array([[0.0, 0.0, 0.0, 2.5], [1.0, 0.0, 0.0, 2.5]])
 
 
-@pytest.mark.parametrize(("shape", "height"), [("box", 0.02), ("round", 0.0)])
-def test_axes_of_a_tray_turn_as_it_does(shape: str, height: float) -> None:
+@pytest.mark.parametrize(
+    ("shape", "height", "wood", "rows"),
+    [
+        ("box", 0.02, WOOD, TRAY), ("round", 0.0, WOOD, TRAY),
+        *(thorough(*one, TURNTABLE) for one in (("box", 0.0, WOOD), ("round", 0.03, WOOD))),
+        thorough("round", 0.0, ICY, TURNTABLE),
+    ],
+)  # fmt: skip
+def test_axes_of_a_floor_turn_with_it(shape: str, height: float, wood: Any, rows: Any) -> None:
     """Its angle is an unknown of the judge, beside the six of the puck."""
     thrown, cx = body(shape, height), 0.1
     inertia = thrown.inertia_radius**2 * thrown.mass
 
     def rates(t: float, y: np.ndarray) -> list[float]:
-        bx, by, turning = (np.interp(t, TRAY[:, 0], TRAY[:, k]) for k in (1, 2, 3))
-        now = replace(WOOD, direction=WOOD.direction + y[6])
+        bx, by, turning = (np.interp(t, rows[:, 0], rows[:, k]) for k in (1, 2, 3))
+        now = replace(wood, direction=wood.direction + y[6])
         ux, uy = y[3] - bx + turning * y[1], y[4] - by - turning * (y[0] - cx)
         state = [0.0, 0.0, y[2], ux, uy, y[5] - turning]
         fx, fy, torque = Judge(shape, [now], None, height).forces(state, 2)
@@ -300,7 +282,8 @@ def test_axes_of_a_tray_turn_as_it_does(shape: str, height: float) -> None:
         state = solve_ivp(rates, (begin, end), state, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
         truth.append(state)
     launch = pt.Launch((0.55, -0.1), spin=9.0, position=(-0.1, 0.02), orientation=0.3)
-    floor = pt.Floor(orthotropic=WOOD, over_time=TRAY, centre=(cx, 0.0))
+    moves: Any = {"over_time": rows} if rows is TRAY else {"turning": 2.5}
+    floor = pt.Floor(orthotropic=wood, centre=(cx, 0.0), **moves)
     run = pt.Scene(thrown, floor, launch, time=0.9, tol=1e-10).simulate(times)
     keys = ("x", "y", "orientation", "vx", "vy", "spin")
     for key, row in zip(keys, np.transpose(truth), strict=False):
