@@ -16,7 +16,7 @@ from scipy.special import ellipe, ellipk
 
 import puck_tables as pt
 from puck_tables.fitting.forward_model import Moving, states_of
-from puck_tables.fitting.speed_motion import Drags, SpeedFriction, SpeedLaunch, speed_paths
+from puck_tables.fitting.speed_motion import SpeedFriction, SpeedLaunch, speed_paths
 from puck_tables.fitting.unit_motions import PlainMotions
 
 G, R = 9.80665, 0.03165
@@ -83,8 +83,7 @@ def test_motions_are_those_of_an_independent_integrator():
         (0.02, 0.0, 0.5, 0.7, 2.0, -30.0), (0.003, 0.4, 0.0, 0.2, 0.3, 90.0),
     ):  # fmt: skip
         way, turn = motion(f, c, k, s, v, w, t)
-        drags = Drags(c, k, s)
-        floor = SpeedFriction(f, G, 0.5**0.5, drags)
+        floor = SpeedFriction(f, G, 0.5**0.5, (c, k, s))
         states, _ = speed_paths([SpeedLaunch(floor, 0.0, R, np.array([v, 0.0]), w)], t)
         x, y, angle = states[0, :3]
         assert np.abs(x - way).max() < 3e-6 * way[-1] and not y.any()

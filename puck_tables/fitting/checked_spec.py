@@ -95,9 +95,8 @@ _CLASHES = (("friction", "decel", ", decel is f g"), ("delta", "height", ""))
 
 
 def spec_of(
-    puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any],
-    priors: Mapping[str, Any], bounds: Mapping[str, Any], start: Mapping[str, Any],
-    impacts: bool = False, rows: bool = False,
+    puck: Puck, free: Iterable[str] | None, fixed: Mapping[str, Any], priors: Mapping[str, Any],
+    bounds: Mapping[str, Any], start: Mapping[str, Any], impacts: bool = False, rows: bool = False,
 ) -> FitSpec:  # fmt: skip
     """What is asked of a fit, checked; free where nothing is said: f, and δ where no height is.
 

@@ -54,8 +54,8 @@ class CoupledFit(NamedTuple):
 
 
 def coupled(
-    problem: Problem, x: FloatArray, pieces: tuple[SlideIndex, ...], films: tuple[Observations,
-    ...], spec: FitSpec, lines: Sequence[Line],
+    problem: Problem, x: FloatArray, pieces: tuple[SlideIndex, ...],
+    films: tuple[Observations, ...], spec: FitSpec, lines: Sequence[Line],
 ) -> list[CoupledFit]:  # fmt: skip
     """The problem of slides that impacts join; none where there is no impact.
 
@@ -227,8 +227,8 @@ class Impact(NamedTuple):
 
 
 def couple(
-    slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...], spec:
-    FitSpec, lines: Sequence[Line],
+    slides: Estimate, pieces: tuple[SlideIndex, ...], films: tuple[Observations, ...],
+    spec: FitSpec, lines: Sequence[Line],
 ) -> tuple[Estimate, str]:  # fmt: skip
     """The estimate of joined slides; that of slides apart and why, if these are not joined."""
     from scipy.special import chdtrc
@@ -246,12 +246,12 @@ def couple(
     for group in groups.values():
         if len(group[0].problem.impact_specs) < most:
             continue
-        best = estimate(group[0].problem, group[0].start) if len(group) == 1 else None
-        if best is None:  # from the best of several starts, with other minima near which it may lie
+        if len(group) == 1:
+            best = estimate(group[0].problem, group[0].start)
+        else:  # from the best of several starts, with other minima near which it may lie
             walked = multi_start([(one.problem, one.start) for one in group], _WALK, ROBUST, _WORSE)
-            best = estimate(group[0].problem, walked[0][0])
             near = tuple(x for x, cost in walked if cost < walked[0][1] + _WORSE)
-            best = replace(best, minima=near)
+            best = replace(estimate(group[0].problem, walked[0][0]), minima=near)
         fits.append((_rise(slides, best, group[0]), best))
     least = min(rise for rise, _ in fits)
     alike = [fit for fit in fits if fit[0] < least + _EQUAL]

@@ -203,14 +203,10 @@ def _foreseen(slopes: FloatArray, kept: Mask) -> FloatArray:
     """How far off frames that are left out may be (n,): by what is not known of the motion, too."""
     result = np.ones(kept.size)
     if not kept.all():
-        size = np.maximum(np.linalg.norm(slopes[kept], axis=0), 1e-300)
-        scaled = slopes / size
+        scaled = slopes / np.maximum(np.linalg.norm(slopes[kept], axis=0), 1e-300)
         covariance = np.linalg.pinv(scaled[kept].T @ scaled[kept], hermitian=True)
-        out = scaled[~kept]
-        result[~kept] = np.sqrt(
-            1.0
-            + np.maximum(np.einsum("nk,kl,nl->n", out, covariance, out), 0.0)  # but for rounding
-        )
+        variance = np.einsum("nk,kl,nl->n", scaled[~kept], covariance, scaled[~kept])
+        result[~kept] = np.sqrt(1.0 + np.maximum(variance, 0.0))  # but for rounding
     return result
 
 
@@ -257,9 +253,8 @@ def _wide(deviations: list[FloatArray], usual: float) -> float:
 
 
 def _noise(
-    problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float],
-    kept: Mask,
-) -> tuple[tuple[float, float], float]:  # fmt: skip
+    problem: Problem, x: FloatArray, rows: FloatArray, degrees: list[float], kept: Mask
+) -> tuple[tuple[float, float], float]:
     """The noise that the residuals show, each kind less what the unknowns take, and the jitter.
 
     It is no smaller than motions are known, whose errors are no noise: of a film that was computed
@@ -313,8 +308,8 @@ def freedom(result: Estimate) -> float:
 
 
 def likeliest(
-    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray, rates:
-    FloatArray, kept: Mask, share: float,
+    noise: tuple[float, float], jitter: float, known: Known, deviations: FloatArray,
+    rates: FloatArray, kept: Mask, share: float,
 ) -> tuple[tuple[float, float], float]:  # fmt: skip
     """The noise of places and angles, and σ_t, under which residuals are most likely.
 

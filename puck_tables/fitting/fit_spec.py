@@ -17,7 +17,7 @@ from puck_tables.contact.base import Base
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
 from puck_tables.fitting.forward_model import Moving, Rims
-from puck_tables.fitting.speed_motion import Drags, SpeedFriction, law_named
+from puck_tables.fitting.speed_motion import SpeedFriction, law_named
 from puck_tables.fitting.unit_motions import UnitMotions, unit_motions_of
 from puck_tables.motion.body import LARGEST_GYRATION, SMALLEST_GYRATION
 from puck_tables.puck import Puck
@@ -119,7 +119,6 @@ def parameters_of(reach: float | None) -> Mapping[str, Parameter]:
     return {**ALL, "gyration": own}
 
 
-_KIND = (*OWN_MOTION, "drag", *INTEGRATED)  # change the curve itself
 TINY = 1e-30  # step of derivatives along the imaginary axis
 _FARTHEST = 10.0  # radii, of what is tracked from the centre: a stick on the body may be longer
 _LEAST = 1e-9  # in its unit, of what must be more than 0
@@ -225,10 +224,10 @@ class FitSpec:
         return {**numbers, **follows}
 
     def slopes(self, result: Mapping[str, float], name: str) -> tuple[float, float, float]:
-        """The derivatives of J, δ and r to one that is found, by the complex step."""
+        """The derivatives of δ, J and r to one that is found, by the complex step."""
         complex_values = {**result, name: result[name] + 1j * TINY}
         decel, delta, radius = ((one + 0j).imag / TINY for one in self.scales(complex_values))
-        return decel, delta, radius
+        return delta, decel, radius
 
     def alone(self) -> FitSpec:
         """What is asked without numbers of impacts: of slides that nothing joins."""
@@ -272,9 +271,9 @@ class FitSpec:
         return Rims(*(numbers[name] for name in defaults), *([] if pair else [math.inf]))
 
     def changes_motion(self, name: str) -> bool:
-        """Whether a parameter is none of the scales."""
+        """Whether a parameter is none of the scales, but changes the curve itself."""
         scale = bool(self.integrated) and name in ("friction", "decel", "gravity")
-        return name in _KIND or name in NODES or scale
+        return scale or name in (*OWN_MOTION, "drag", *INTEGRATED, *NODES)
 
     @property
     def integrated(self) -> tuple[str, ...]:
@@ -294,7 +293,7 @@ class FitSpec:
         if self.speeds or self.integrated:
             g = numbers["gravity"]
             law = self.speed_law(numbers) if self.speeds or self.law else float(decel / g)
-            drags = Drags(numbers["drag"], *(numbers[name] for name in DRAGS))
+            drags = tuple(numbers[name] for name in ("drag", *DRAGS))
             push = g * numbers["slope_x"], g * numbers["slope_y"]
             belt = numbers["belt_x"], numbers["belt_y"]
             by_speed = SpeedFriction(law, g, numbers["gyration"], drags, push, belt)

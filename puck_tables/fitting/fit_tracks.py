@@ -286,17 +286,15 @@ def _reported(
         (film.name, int((named[film.name] < film.frame[0]).sum()),
          int((named[film.name] > film.frame[-1]).sum())) for film in best.problem.films
     )  # fmt: skip
-    constant_chi2 = (
-        chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
-    )
+    constant = chi2_under(estimates.constant, best.problem.noise) if inputs.speeds else math.nan
     result = Fit(
         given=inputs.spec.puck, numbers=numbers, launches=launches, chi2=best.chi2,
         degrees=best.degrees, noise=best.problem.noise, jitter=best.problem.jitter,
-        noise_known=inputs.known, outliers=best.outliers,
-        runs=runs(best), drift=drift(best), left_out=left_out,
+        noise_known=inputs.known, outliers=best.outliers, runs=runs(best), drift=drift(best),
+        left_out=left_out,
         cut_off=_trimmed_ends(estimates.slides, observed.problem, left_out), blind=blind,
         astray=judged.astray, laws=laws, held_out=held_out, impacts=impacts,
-        untied=estimates.untied, constant_chi2=constant_chi2, estimate=best, certainty=certainty,
+        untied=estimates.untied, constant_chi2=constant, estimate=best, certainty=certainty,
         not_met=not_met(impacts, best.problem, inputs.lines) if inputs.impacts else (),
         forces=judged.forces, uncut=observed.uncut,
     )  # fmt: skip

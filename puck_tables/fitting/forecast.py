@@ -69,13 +69,7 @@ class Camera:
                 object.__setattr__(self, name, number)
 
     def film(self, stop_time: float) -> Observations:
-        """Its frames of a motion that stops at a time.
-
-        Raises
-        ------
-        InputError
-            If they are too few or too many.
-        """
+        """Its frames of a motion that stops at a time; refused if they are too few or too many."""
         duration = stop_time if self.duration is None else self.duration
         count = math.floor(min(duration * self.fps, 2.0 * MOST_FRAMES) * (1.0 + 1e-12)) + 1
         if not FEWEST <= count <= MOST_FRAMES:
@@ -318,9 +312,8 @@ def split(
 
 
 def predicted(
-    part: Estimate, certainty: Certainty, films: tuple[Observations, ...],
-    later: tuple[Mask, ...],
-) -> HeldOut:  # fmt: skip
+    part: Estimate, certainty: Certainty, films: tuple[Observations, ...], later: tuple[Mask, ...]
+) -> HeldOut:
     """How far the frames held out are from their predictions."""
     whole = part.problem.with_films(films).with_noise(part.problem.noise, part.x)
     rows, slopes = whole.residuals_and_jacobian(part.x)

@@ -28,7 +28,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.speed_motion import SPEED_ACCURACY, SpeedFriction, SpeedLaunch, speed_paths
-from puck_tables.fitting.unit_motions import UnitMotions
+from puck_tables.fitting.unit_motions import Sloped, UnitMotions
 from puck_tables.motion.impact_law import along_normal, impulses
 
 _SPEED_STEP = 1e-6  # of a slip at the rim, of a radius, of δ
@@ -112,19 +112,22 @@ def _placed(launch: FloatArray, states: FloatArray) -> FloatArray:
     return states
 
 
-def _path(
-    moving: Moving, launch: FloatArray, times: FloatArray, want: bool
-) -> tuple[FloatArray, FloatArray]:
+def _path(moving: Moving, launch: FloatArray, times: FloatArray, want: bool) -> Sloped:
     """States from (0, 0) on, and derivatives if they are wanted."""
     c, at = moving.drag, moving.arguments(launch)
-    moving = moving._replace(motions=moving.motions.facing(launch[5]))
+    motions = moving.motions.facing(launch[5])
     if not at[:3].any():
         return np.zeros((6, times.size)), np.zeros((times.size, 6, 7))
+    grid = sooner = times
+    if c != 0.0:
+        grid = np.union1d(times, np.linspace(0.0, float(times.max(initial=0.0)), _MOMENTS))
+        sooner = np.expm1(c * grid) / c
+    if want:
+        states, slopes = motions.states_and_slopes(at, sooner)
+    else:
+        states, slopes = motions.states(at[:, None], sooner[None])[:, 0], np.empty((0, 6, 7))
     if c == 0.0:
-        return _without_drag(moving, at, times, want)
-    end = float(times.max(initial=0.0))
-    grid = np.union1d(times, np.linspace(0.0, end, _MOMENTS))
-    states, slopes = _without_drag(moving, at, np.expm1(c * grid) / c, want)
+        return states, slopes
     slower, step, where = np.exp(-c * grid), np.diff(grid), np.searchsorted(grid, times)
 
     def dragged(rows: FloatArray) -> FloatArray:
@@ -144,14 +147,6 @@ def _path(
     out[:, PLACE, TIME] = moved[RATE].T
     out[:, RATE, TIME] = slopes[where, RATE, TIME] - c * moved[RATE].T
     return moved, out
-
-
-def _without_drag(
-    moving: Moving, at: FloatArray, times: FloatArray, want: bool
-) -> tuple[FloatArray, FloatArray]:
-    if want:
-        return moving.motions.states_and_slopes(at, times)
-    return moving.motions.states(at[:, None], times[None])[:, 0], np.empty((0, 6, 7))
 
 
 def _by_speed(

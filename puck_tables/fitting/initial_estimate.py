@@ -91,9 +91,8 @@ def pushed(film: Observations, start: int, stop: int) -> bool:
 
 
 def _gain(
-    film: Observations, noise: float, steady: Mask, middle: int, reach: int,
-    rests: int,
-) -> float:  # fmt: skip
+    film: Observations, noise: float, steady: Mask, middle: int, reach: int, rests: int
+) -> float:
     """By how much two parabolas are nearer than one polynomial, 0 where that is by chance.
 
     ``rests``: the frame from which on the puck does.  It comes to rest by itself, where its

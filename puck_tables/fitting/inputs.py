@@ -67,15 +67,12 @@ class Inputs:
                 f"{' and '.join(spec.integrated)} cannot be found beside impacts: leave one of "
                 "the two out"
             )
-        names: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
-        if isinstance(names, list | tuple):
-            names = tuple(names)
-        elif names is not None:
-            names = real("hold_out", names, "1")
-        return cls(
-            spec, checked_noise(noise), checked_jitter(jitter), checked, between,
-            impacts or bool(lines), lines, names,
-        )  # fmt: skip
+        later: Any = (hold_out,) if isinstance(hold_out, str) else hold_out
+        if later is not None:
+            listed = isinstance(later, list | tuple)
+            later = tuple(later) if listed else real("hold_out", later, "1")
+        impacts, own = impacts or bool(lines), checked_noise(noise)
+        return cls(spec, own, checked_jitter(jitter), checked, between, impacts, lines, later)
 
     @property
     def known(self) -> Known:

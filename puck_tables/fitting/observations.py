@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -133,14 +133,11 @@ class Observations:
 
     def part(self, chosen: Mask) -> Observations:
         """Some of the frames; the first of them is the new start."""
+        names = ("place", "frame", "angle", "row", "counts")
+        every = ((name, getattr(self, name)) for name in names)
+        some: Any = {name: None if one is None else one[chosen] for name, one in every}
         first = float(self.time[chosen][0])
-        return replace(
-            self, start=self.start + first, time=self.time[chosen] - first,
-            place=self.place[chosen], frame=self.frame[chosen],
-            angle=None if self.angle is None else self.angle[chosen],
-            row=None if self.row is None else self.row[chosen],
-            counts=None if self.counts is None else self.counts[chosen],
-        )  # fmt: skip
+        return replace(self, start=self.start + first, time=self.time[chosen] - first, **some)
 
     def thinned(self, count: int) -> Observations:
         """So many of the frames, spread over all of them, or all if they are fewer."""

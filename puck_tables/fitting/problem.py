@@ -196,8 +196,8 @@ class Problem(Slides):
         return result
 
     def with_noise(
-        self, noise: tuple[float, float], x: FloatArray,
-        kept: Mask | None = None, jitter: float | None = None,
+        self, noise: tuple[float, float], x: FloatArray, kept: Mask | None = None,
+        jitter: float | None = None,
     ) -> Problem:  # fmt: skip
         """A problem with other noise; where time stamps jitter it depends on the motion ``x``.
 
@@ -285,9 +285,8 @@ _APART = 1e-2  # starts that are nearer have met
 
 
 def multi_start(
-    starts: list[Start], rounds: tuple[tuple[int, int], ...],
-    scale: float = math.inf, allowance: float = 0.0, kept: Mask | None = None,
-    held: int | None = None,
+    starts: list[Start], rounds: tuple[tuple[int, int], ...], scale: float = math.inf,
+    allowance: float = 0.0, kept: Mask | None = None, held: int | None = None,
 ) -> list[tuple[FloatArray, float]]:  # fmt: skip
     """Unknowns at the deepest minima that starts lead to, and the cost there, the deepest first.
 
@@ -341,8 +340,8 @@ class _Walker:
     """A start on its way."""
 
     def __init__(
-        self, problem: Problem, x: FloatArray, scale: float,
-        kept: Mask | None, held: int | None, level: float = ROUGH,
+        self, problem: Problem, x: FloatArray, scale: float, kept: Mask | None, held: int | None,
+        level: float = ROUGH,
     ) -> None:  # fmt: skip
         self.problem, self.scale, self.held, self.level = problem, scale, held, level
         self.weights = 1.0 if kept is None else kept.astype(np.float64)

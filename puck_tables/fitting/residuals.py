@@ -71,14 +71,10 @@ def excess_of(
     smooth = smooth or result.problem.smooth
     films, kinds = len(result.problem.films), result.problem.kinds
     thirds = [max((kinds == kind).sum() - 3 * films * (2 - kind), 1) for kind in (PLACE, ANGLE)]
-    return max((
-        result.size * own / other
-        for count, own, other in zip(thirds, result.problem.noise, smooth, strict=True)
-        if math.isfinite(other) and other > 0.0 and (
-            not chance
-            or math.log(result.size * own / other) > chance * 1.5 / math.sqrt(count)
-        )
-    ), default=1.0)  # fmt: skip
+    every = zip(thirds, result.problem.noise, smooth, strict=True)
+    ratios = [(n, result.size * own / other) for n, own, other in every if 0.0 < other < math.inf]
+    return max((one for n, one in ratios if not chance or math.log(one) > chance * 1.5 / n**0.5),
+               default=1.0)  # fmt: skip
 
 
 def misfits(result: Estimate, explained: float) -> tuple[str, ...]:
@@ -178,12 +174,9 @@ def lengthways(result: Estimate) -> float:
 
 def _series(result: Estimate) -> list[FloatArray]:
     """Residuals that count, frame after frame."""
-    return [
-        rows
-        for part in result.problem.each()
-        for where in part
-        if (rows := result.residuals[where][result.kept[where]]).size
-    ]
+    rows, kept = result.residuals, result.kept
+    every = (rows[where][kept[where]] for part in result.problem.each() for where in part)
+    return [one for one in every if one.size]
 
 
 SLOPE, DRAG, AIR = (0, 1), (2,), (3,)  # forces: m/s² along x and y; 1/s; 1/m

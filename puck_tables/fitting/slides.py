@@ -19,16 +19,11 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.fitting.fit_spec import LAUNCH, MARK, MOST, OWN_MOTION, WALL, FitSpec
 from puck_tables.fitting.forward_model import (
     AS_LAUNCH,
-    DECEL,
     DELTA,
     LEAST_NUMBER,
     PLACE,
-    RADIUS,
-    SPIN,
     STEP,
     TIME,
-    VX,
-    VY,
     ImpactSpec,
     ImpactState,
     Moving,
@@ -263,12 +258,9 @@ class Slides:
         """The states (6, n) of the model at the frames of each track."""
         result = self.numbers_at(x)
         moving, (slides, _) = self.moving(result), self.slides(x)
-        return [
-            np.concatenate([
-                states_of(moving, slide.launch, times)
-                for _, times, slide in self._parts(n, result, track)
-            ], axis=1) for n, track in enumerate(slides)
-        ]  # fmt: skip
+        every = (self._parts(n, result, track) for n, track in enumerate(slides))
+        return [np.concatenate([states_of(moving, one.launch, times) for _, times, one in parts],
+                               axis=1) for parts in every]  # fmt: skip
 
     def paths(self, x: FloatArray) -> list[FloatArray]:
         """Places and angles (3, n) of the model at the frames of each track."""
@@ -348,7 +340,7 @@ class _Along:
         self._scales = np.zeros((7, len(spec.free)))  # which are the first unknowns
         for k, name in enumerate(spec.free):
             if not spec.changes_motion(name):
-                self._scales[[DECEL, DELTA, RADIUS], k] = spec.slopes(result, name)
+                self._scales[DELTA:TIME, k] = spec.slopes(result, name)
                 continue
             value, (low, high) = result[name], spec.limits(name)
             step = STEP * max(abs(value), LEAST_NUMBER) * (1.0 if value < high else -1.0)
@@ -370,7 +362,7 @@ class _Along:
         states, every, differ = states_and_slopes(self._moving, slide.launch, times, self._nearby)
         slopes = every[:, rows].swapaxes(0, 1)
         by = np.zeros(change.shape)
-        by[[VX, VY, SPIN]], by[TIME] = change[3:6], -change[0]
+        by[:DELTA], by[TIME] = change[3:6], -change[0]
         by[:, : self._scales.shape[1]] += self._scales
         out: FloatArray = (slopes.reshape(-1, 7) @ by).reshape(*slopes.shape[:2], -1)
         out[PLACE] += change[[1, 2, 6], None]

@@ -189,9 +189,7 @@ def _linear_fit(spec: FitSpec, films: list[_Moments], trial: NumbersOf, least: f
     return _LinearFit({**trial, **numbers}, np.array(launches), left)
 
 
-def _moments(
-    film: Observations, angle: FloatArray | None, moving: int, radius: float
-) -> _Moments:  # fmt: skip
+def _moments(film: Observations, angle: FloatArray | None, moving: int, radius: float) -> _Moments:
     """A track along polynomials of time, without strays."""
     t, smooth = film.time[:moving], []
     at = np.linspace(0.0, float(t[-1]), _MOMENTS)

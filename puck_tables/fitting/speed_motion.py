@@ -87,27 +87,17 @@ def law_named(name: str, fast: float, rest: float, speed: float) -> SpeedLaw:
                     "linear" if name == "two-valued" else "cubic")  # fmt: skip
 
 
-class Drags(NamedTuple):
-    """Drag besides friction: of speed and spin 1/s, of the speed squared 1/m, of the spin 1/s.
-
-    All over the mass, or the moment of inertia.
-    """
-
-    linear: float = 0.0
-    quadratic: float = 0.0
-    spinning: float = 0.0
-
-
 class SpeedFriction(NamedTuple):
-    """Friction over slip speed, or one for all, gravity m/s², radius of gyration over r, drags.
+    """Friction over slip speed, or one for all, gravity m/s², radius of gyration over r.
 
+    ``drags``: of speed and spin 1/s, of the speed squared 1/m, of the spin 1/s, all over the mass;
     ``push``: m/s² along x and y, of a slope; ``belt``: m/s, of the floor along x and y.
     """
 
     law: SpeedLaw | float
     gravity: float
     gyration: float
-    drags: Drags = Drags()
+    drags: tuple[float, ...] = (0.0, 0.0, 0.0)
     push: tuple[float, float] = (0.0, 0.0)
     belt: tuple[float, float] = (0.0, 0.0)
 
@@ -271,8 +261,7 @@ def speed_paths(
     """
     velocities = np.array([[*one.friction.belt, 0.0] for one in launches])
     states = np.zeros((_STEPS + 1, len(launches), 7))
-    for row, one, (belt_x, belt_y, _) in zip(states[0], launches, velocities.tolist(), strict=True):
-        row[:3] = one.velocity[0] - belt_x, one.velocity[1] - belt_y, one.radius * one.spin
+    states[0, :, :3] = [[*one.velocity, one.radius * one.spin] for one in launches] - velocities
     drifts = velocities[:, :, None] * times, np.repeat(velocities[:, :, None], times.size, axis=2)
     if not states[0, 0].any():
         return np.concatenate(drifts, axis=1), np.zeros((3, times.size))
@@ -290,9 +279,8 @@ def speed_paths(
 
 
 def _at_times(
-    states: FloatArray, radius: FloatArray, times: FloatArray,
-    drifts: tuple[FloatArray, FloatArray],
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    states: FloatArray, radius: FloatArray, times: FloatArray, drifts: tuple[FloatArray, FloatArray]
+) -> tuple[FloatArray, FloatArray]:
     """Between steps (n, m, 7), by cubics; ``drifts``: of the belt, (m, 3, n) each."""
     known, time = states[:, :, X : TURN + 1], states[:, :, TIME]
     speeds = states[:, :, : RIM + 1] / np.stack([1.0 + 0.0 * radius, 1.0 + 0.0 * radius, radius], 1)

@@ -53,6 +53,7 @@ HIGHEST = 3.9  # δ, below the fold of the balance at 3.96 (contact.one_sided)
 _ACCURACY = 1e-7  # of friction ratios; a film knows places to 1e-4 of the path
 _LOCAL = 1e-9  # of a step: a hundredth of that
 _BY_DELTA = 4  # of the derivatives of unit states
+Sloped = tuple[FloatArray, FloatArray]  # some values, and their derivatives
 
 
 class UnitMotions:
@@ -85,9 +86,7 @@ class UnitMotions:
                 out[:, k] = self.states_and_slopes(launch, times[k])[0]
         return out
 
-    def states_and_slopes(
-        self, launch: FloatArray, times: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def states_and_slopes(self, launch: FloatArray, times: FloatArray) -> Sloped:
         """States (6, n) of a launch (6,), and their derivatives (n, 6, 7) by it and by time."""
         vx, vy, spin, _, decel, radius = launch.tolist()
         frame, slopes = frame_of((vx, vy), spin, decel, radius), np.empty((times.size, 6, 7))
@@ -122,9 +121,7 @@ class PlainMotions(UnitMotions):
         headings = directions(launches[0], launches[1])[:, None]
         return cartesian(rows.reshape(STATE_ROWS, *times.shape), headings)
 
-    def states_and_slopes(
-        self, launch: FloatArray, times: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def states_and_slopes(self, launch: FloatArray, times: FloatArray) -> Sloped:
         """By the slopes of the stop table."""
         table, one = StopTable.shipped(), np.zeros(1, np.int64)
         pucks = table.pucks(launches_in(launch[:, None]))
@@ -167,9 +164,7 @@ class TallMotions(UnitMotions):
         self._gyration, self._plain = gyration, PlainMotions()
         self._is_plain = plain_up_to("uniform", gyration) > 0.0
 
-    def states_and_slopes(
-        self, launch: FloatArray, times: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def states_and_slopes(self, launch: FloatArray, times: FloatArray) -> Sloped:
         """Cubic in δ through the motions of four heights; looked up up to δ = 1."""
         if self._is_plain and launch[3] <= self._plain.highest:
             return self._plain.states_and_slopes(launch, times)
@@ -262,9 +257,7 @@ class BaseMotions(UnitMotions):
         out[3:5] = np.tensordot(turn, out[3:5], 1)
         return out
 
-    def states_and_slopes(
-        self, launch: FloatArray, times: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def states_and_slopes(self, launch: FloatArray, times: FloatArray) -> Sloped:
         """By motions to both sides in every argument, and in time."""
         slip = math.hypot(launch[0], launch[1], launch[5] * launch[2])
         sizes = np.array([slip, slip, slip / launch[5], self.highest, *launch[4:]])
