@@ -166,6 +166,13 @@ def test_a_spin_of_several_turns_a_frame_apart_is_found(true):
     assert moving.launch().spin == pytest.approx(SPIN, abs=0.5)
 
 
+def test_a_launch_angle_may_be_held_where_turns_cannot_be_followed(true):
+    place, angle = film_judge.noisy(np.random.default_rng(3), true[:, :160:8], NOISE)
+    found = pt.fit(pt.Track(TIMES[:160:8], place, angle), KNOWN, fixed={"launch_angle": 0.0})
+    assert found.launch().spin == pytest.approx(SPIN, abs=0.5)
+    assert found["friction"].value == pytest.approx(0.15, abs=5.0 * found["friction"].error)
+
+
 @pytest.mark.thorough
 def test_a_hand_before_and_a_wall_after_are_left_out(true):
     track = film(true, 7)
