@@ -68,12 +68,13 @@ def test_heights_beyond_full_contact_are_refused():
 
 
 @pytest.mark.thorough
-def test_states_that_cannot_be_kept_are_refused_and_stops_are_not():
-    """Under Hertz's law a homogeneous flat puck ends in pure spin: states have no limit inside."""
-    homogeneous = puck_under("hertz", 0.5**0.5)
+@pytest.mark.parametrize(("law", "gyration"), [("hertz", 0.5**0.5), ("uniform", 0.9)])
+def test_states_that_cannot_be_kept_are_refused_and_stops_are_not(law: str, gyration: float):
+    """Such pucks, where they are flat, end in pure spin: states have no limit inside."""
+    puck = puck_under(law, gyration)
     with pytest.raises(pt.errors.AccuracyError, match="stops and resultants alone"):
-        pt.export_source("c", "state", 1e-4, homogeneous)
-    assert "hertz" in repr(pt.export_source("c", "stop", 1e-4, homogeneous))
+        pt.export_source("c", "state", 1e-4, puck)
+    assert "delta <= " in repr(pt.export_source("c", "stop", 1e-4, puck))
 
 
 def test_a_profile_with_a_name_that_ends_a_comment():

@@ -35,6 +35,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.contact.closed_form import Resultants, moment_balance
 from puck_tables.contact.integrals import slip_direction
 from puck_tables.contact.laws import Law
+from puck_tables.errors import AccuracyError
 from puck_tables.puck import Puck
 from puck_tables.stopping.lookup import heights
 from puck_tables.stopping.stop_section import stops_at
@@ -242,7 +243,9 @@ def _limit_motions(values: LawValues) -> LimitMotions:
     drawn = np.polyval(np.polyfit(shares**2, drawn, 1), shares**2)
     rates = [-slow_end[0], fast_end[0], drawn]
     turnings = [np.zeros(HEIGHTS), fast_end[1], slopes(u_limit)[1]]
-    units = [float(f"{TURN_UNIT * rate[-1]:.3g}") for rate in rates]
+    if not np.min(rates) > 0.0:
+        raise AccuracyError("the motions of such pucks end in pure sliding, or in pure spin")
+    units = [float(f"{TURN_UNIT * rate.min():.3g}") for rate in rates]
     starts = [_start(marks, limits, fast) for fast in (False, True)]
 
     def part_at(part: int) -> Callable[[FloatArray], FloatArray]:
