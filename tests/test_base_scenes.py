@@ -11,6 +11,7 @@ import pytest
 from base_judge import Judge
 from golden.make_body_starts import BOX, K, LawJudge, stribeck
 from rarely import thorough
+from rays_judge import within
 
 from puck_tables import (
     Base,
@@ -201,11 +202,7 @@ def on_patches(x: Any, y: Any) -> Any:
     f = np.full(x.shape, 0.2)
     for cx, cy, radius in ROUND:
         f[np.hypot(x - cx, y - cy) < radius] = 0.3
-    within = np.zeros(x.shape, bool)
-    for (ax, ay), (bx, by) in zip(HOOK, HOOK[1:] + HOOK[:1], strict=True):
-        if ay != by:
-            within ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * (bx - ax))
-    f[within] = 0.05
+    f[within([HOOK])(x, y)] = 0.05
     return f
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rarely import thorough
-from rays_judge import border, by_ellipse, friction_of, sides, where_it_bends
+from rays_judge import border, by_ellipse, friction_of, sides, where_it_bends, within
 from scenes import two_ends_as_alone
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize
@@ -38,13 +38,6 @@ BENDS = {STRIBECK: [0.2, 0.7, 2.0], STEEP: [0.03, 0.1, 0.3, 1.0], KINKED: [0.2, 
 def law_of(one: Any) -> Any:
     """What goes by the slip speed in a friction, or nothing."""
     return one.law if isinstance(one, pt.Orthotropic) else None if isinstance(one, float) else one
-
-
-def in_hook(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    within = np.zeros(x.shape, bool)
-    for (ax, ay), (bx, by) in zip(HOOK, HOOK[1:] + HOOK[:1], strict=True):
-        within ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * (bx - ax))
-    return within
 
 
 def axes_of(one: Any, turn: float) -> float:
@@ -103,7 +96,7 @@ class Judge:
                 beyond = x * math.cos(angle) + y * math.sin(angle) > place
                 choice.append((beyond, self.strips[1]))
             if self.patch is not None and self.patch.corners:
-                choice.append((in_hook(x + px, y + py), self.patch.friction))
+                choice.append((within([HOOK])(x + px, y + py), self.patch.friction))
             elif self.patch is not None:
                 choice.append((np.hypot(x - mx + px, y - my + py) < radius, self.patch.friction))
             for where, one in choice:
