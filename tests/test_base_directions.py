@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rarely import thorough
+from rays_judge import by_ellipse, friction_of, sides, within
 
 from puck_tables import Base, Floor, InputError, Launch, Orthotropic, Puck, Scene
 from puck_tables.world.floor_forces import friction_at
@@ -27,40 +28,17 @@ def puck(base: Base | str, height: float = 0.0) -> Puck:
 
 
 def judge(base: Base, axes: Orthotropic, height: float, state: Any) -> np.ndarray:
-    """Force and torque at N = 1 by points of triangles from the instantaneous centre."""
-    _, _, angle, vx, vy, w = state
+    """Force and torque at N = 1 by points on rays from the instantaneous centre."""
+    _, _, angle, *slip = state
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, -s], [s, c]])
-    centre = np.array([-vy / w, vx / w])
-    node, weight = np.polynomial.legendre.leggauss(20)
-    along, part = np.polynomial.legendre.leggauss(6)
-    along, part = 0.5 * (1.0 + along), 0.5 * part
-    ends = np.linspace(0.0, 1.0, 101)
-    share = (ends[:-1, None] + 0.5 / 100 * (1.0 + node)).ravel()
-    on_side = np.tile(0.5 / 100 * weight, 100)
-    points, areas = [], []
-    for outline in base.outlines:
-        corners = (np.array(outline) - base.middle) @ turn.T
-        for one, two in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            a, b = one - centre, two - centre
-            far = a + share[:, None] * (b - a)
-            points.append((centre + along[:, None, None] * far).reshape(-1, 2))
-            twice = a[0] * b[1] - a[1] * b[0]
-            areas.append((twice * along[:, None] * part[:, None] * on_side).ravel())
-    (x, y), area = np.concatenate(points).T, np.concatenate(areas)
-    ux, uy = vx - w * y, vy + w * x
-    slip = np.hypot(ux, uy)
-    ex, ey = ux / slip, uy / slip
+    outlines = [((np.array(one) - base.middle) @ turn.T).tolist() for one in base.outlines]
     way = axes.direction + (angle if axes.fixed_to == "body" else 0.0)
-    c, s = math.cos(way), math.sin(way)
-    one, two = axes.friction[0] ** 2 * (c * ex + s * ey), axes.friction[1] ** 2 * (c * ey - s * ex)
-    root = np.hypot(one / axes.friction[0], two / axes.friction[1])
-    tx, ty = (c * one - s * two) / root, (s * one + c * two) / root
-    rows = np.stack([np.ones_like(x), x, y])
-    balance = (rows * area) @ rows.T
-    pull = [np.zeros(3), -(rows * area) @ tx * height / 2, -(rows * area) @ ty * height / 2]
-    load = area * (np.linalg.solve(balance + np.stack(pull), [1.0, 0.0, 0.0]) @ rows)
-    return -np.array([load @ tx, load @ ty, load @ (x * ty - y * tx)])
+    curves = [side for corners in outlines for side in sides(corners)]
+    return friction_of(
+        curves, within(outlines), lambda x, y, ex, ey: by_ellipse(axes.friction, way, ex, ey), slip,
+        height / 2, 24,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

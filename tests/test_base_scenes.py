@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from base_judge import Judge
+from golden.make_body_starts import BOX, K, LawJudge, stribeck
 from rarely import thorough
+from rays_judge import within
 
 from puck_tables import (
     Base,
@@ -88,25 +90,6 @@ def test_known_runs(name: str) -> None:
     assert abs(run.energy_residual) < 1e-12
 
 
-class UnderStribeck(Judge):
-    """A box of 0.2 × 0.1 m under f = 0.2 + 0.15 exp(−u/0.1); ``unit``: m/s, of its velocities."""
-
-    def __init__(self, unit: float) -> None:
-        corners = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]
-        super().__init__([corners], [], 0.0, math.sqrt(0.0125 / 3.0))
-        self.unit = unit
-
-    def friction_at(self, speed: np.ndarray) -> np.ndarray:
-        return 0.2 + 0.15 * np.exp(-self.unit * speed / 0.1)
-
-    def along_rays(self, far: np.ndarray, w: float) -> list[np.ndarray]:
-        nodes, weights = np.polynomial.legendre.leggauss(40)
-        share = 0.5 + 0.5 * nodes
-        along = far[:, None] * share**2  # the law bends next to the centre
-        pull = self.friction_at(w * along) * share * weights * far[:, None]
-        return [(pull * along**n).sum(axis=1) for n in (1, 2, 3)]
-
-
 @pytest.mark.parametrize("velocity", [thorough((1.0, 0.0)), (0.2, 0.1)])
 def test_rows_within_steps_keep_tol(velocity: tuple[float, float]) -> None:
     """A step is several pieces of the path: also where these are joined."""
@@ -115,8 +98,10 @@ def test_rows_within_steps_keep_tol(velocity: tuple[float, float]) -> None:
                   launch=Launch(velocity, spin=spin))  # fmt: skip
     run = scene.simulate([0.0])
     times = run.end_time * (1.0 - np.append(np.linspace(0.98, 0.02, 97), 10.0 ** -np.arange(2, 5)))
-    unit = math.hypot(*velocity, math.sqrt(0.0125 / 3.0) * spin)
-    truth = UnderStribeck(unit).states(velocity, spin, g, times)
+    unit = math.hypot(*velocity, K * spin)
+    judge = LawJudge(stribeck, [BOX], [], 0.0, K)
+    judge.unit = unit
+    truth = judge.states(velocity, spin, g, times)
     speed, rate = run.speed_scale, run.rate_scale
     length, reach = speed**2 / rate, math.hypot(0.1, 0.05)
     scales = np.array([length, length, length / reach, speed, speed, speed / reach])[:, None]
@@ -217,11 +202,7 @@ def on_patches(x: Any, y: Any) -> Any:
     f = np.full(x.shape, 0.2)
     for cx, cy, radius in ROUND:
         f[np.hypot(x - cx, y - cy) < radius] = 0.3
-    within = np.zeros(x.shape, bool)
-    for (ax, ay), (bx, by) in zip(HOOK, HOOK[1:] + HOOK[:1], strict=True):
-        if ay != by:
-            within ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * (bx - ax))
-    f[within] = 0.05
+    f[within([HOOK])(x, y)] = 0.05
     return f
 
 

@@ -1,4 +1,4 @@
-"""Strips and patches that are rougher one way than the other: a judge, known answers, refusals."""
+"""Friction by direction, by slip speed or by both on strips and patches: a judge, known answers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from rarely import thorough
-from rays_judge import border, by_ellipse, friction_of, sides, where_it_bends
+from rays_judge import border, by_ellipse, friction_of, sides, where_it_bends, within
 from scenes import two_ends_as_alone
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize
@@ -24,9 +24,20 @@ WOOD = pt.Orthotropic((0.1, 0.35), 0.7)
 SOLE = pt.Orthotropic((0.3, 0.12), -0.4, fixed_to="body")
 FELT = pt.Orthotropic((0.25, 0.15), 2.0)
 STRIBECK = pt.StribeckLaw(0.3, 0.1, speed=0.3)
+STEEP = pt.CurlingLaw(0.02, 0.1, 0.05)
 KINKED = ((0.0, 0.3), (0.2, 0.35), (0.4, 0.15), (90.0, 0.15))
 ICY = pt.Orthotropic((1.0, 0.4), 0.7, law=STRIBECK)
 GROOVED = pt.Orthotropic((0.3, 1.1), -0.4, fixed_to="body", law=KINKED)
+
+
+HOOK = [(0.0, 0.0), (0.09, -0.02), (0.08, 0.05), (0.03, 0.03), (0.02, 0.09)]
+# where rays are cut: next to slip zero laws bend most
+BENDS = {STRIBECK: [0.2, 0.7, 2.0], STEEP: [0.03, 0.1, 0.3, 1.0], KINKED: [0.2, 0.4]}
+
+
+def law_of(one: Any) -> Any:
+    """What goes by the slip speed in a friction, or nothing."""
+    return one.law if isinstance(one, pt.Orthotropic) else None if isinstance(one, float) else one
 
 
 def axes_of(one: Any, turn: float) -> float:
@@ -36,9 +47,11 @@ def axes_of(one: Any, turn: float) -> float:
 def friction_on(one: Any, turn: float, ex: np.ndarray, ey: np.ndarray, slip: np.ndarray) -> Any:
     if isinstance(one, float):
         return one * ex, one * ey
+    law = pt.SpeedLaw(*zip(*KINKED, strict=True)) if law_of(one) == KINKED else law_of(one)
+    f = law(slip) if law else 1.0
+    if not isinstance(one, pt.Orthotropic):
+        return f * ex, f * ey
     tx, ty = by_ellipse(one.friction, axes_of(one, turn), ex, ey)
-    f = 1.0 if not one.law else pt.SpeedLaw(*zip(*KINKED, strict=True))(slip)
-    f = STRIBECK(slip) if one.law == STRIBECK else f
     return f * tx, f * ty
 
 
@@ -58,14 +71,16 @@ class Judge:
             place, angle = self.cut
             place -= px * math.cos(angle) + py * math.sin(angle)
             curves.append(border(angle, place))
-        if self.patch is not None:
+        if self.patch is not None and self.patch.corners:
+            curves += sides([(x - px, y - py) for x, y in HOOK])
+        elif self.patch is not None:
             (mx, my), radius = self.patch.centre, self.patch.radius
             curves.append((mx - px, my - py, radius))
         own = [*self.strips, *([] if self.patch is None else [self.patch.friction])]
-        laws = [one for one in own if not isinstance(one, float) and one.law]
-        speeds = [0.2, 0.4] if any(one.law == KINKED for one in laws) else []
-        speeds += [0.2, 0.7, 2.0] if STRIBECK in [one.law for one in laws] else []
-        bent = where_it_bends(velocity, speeds, [axes_of(one, turn) for one in laws])
+        laws = [one for one in own if law_of(one)]
+        speeds = [speed for one in laws for speed in BENDS[law_of(one)]]
+        axes = [axes_of(one, turn) for one in laws if isinstance(one, pt.Orthotropic)]
+        bent = where_it_bends(velocity, speeds, axes)
         curves = [*bent, *curves] if laws else curves
 
         def inside(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -80,7 +95,9 @@ class Judge:
             if self.cut is not None:
                 beyond = x * math.cos(angle) + y * math.sin(angle) > place
                 choice.append((beyond, self.strips[1]))
-            if self.patch is not None:
+            if self.patch is not None and self.patch.corners:
+                choice.append((within([HOOK])(x + px, y + py), self.patch.friction))
+            elif self.patch is not None:
                 choice.append((np.hypot(x - mx + px, y - my + py) < radius, self.patch.friction))
             for where, one in choice:
                 ox, oy = friction_on(one, turn, ex, ey, slip)
@@ -101,6 +118,9 @@ FLOORS: dict[str, tuple[list[Any], Any]] = {
     "grooves on ice, a number around them": ([GROOVED, ICY], pt.Patch(0.2, (-0.05, 0.0), 0.04)),
     "grooves": ([GROOVED], None),
     "a patch of grooves on wood": ([WOOD], pt.Patch(GROOVED, (0.03, 0.01), 0.04)),
+    "a law beside a number": ([STRIBECK, 0.2], None),
+    "a law beside another": ([STEEP, STRIBECK], None),
+    "a hook of one law in another": ([STRIBECK], pt.Patch(STEEP, corners=HOOK)),
 }
 
 
@@ -110,6 +130,8 @@ def floor_of(strips: list[Any], patch: Any) -> pt.Floor:
         own = strips[0]
         if isinstance(own, float):
             return pt.Floor(patches=patches)
+        if own == STRIBECK:
+            return pt.Floor(law=own, patches=patches)
         return pt.Floor(orthotropic=own, patches=patches)
     return pt.Floor(strips=pt.Strips((0.02,), tuple(strips), direction=0.3), patches=patches)
 
@@ -137,6 +159,8 @@ def test_friction_is_that_of_points_on_rays(seed, name, shape, height):
 
 MOTIONS = [("a sole on half of it, felt on the other", "round", 0.03),
            ("ice", "round", 0.03),
+           thorough("a law beside another", "round", 0.0),
+           thorough("a law beside a number", "round", 0.0),
            thorough("felt in a sole beside wood", "box", 0.02),
            thorough("grooves", "box", 0.0)]  # fmt: skip
 
@@ -206,32 +230,6 @@ def test_a_patch_holds_by_the_friction_along_the_slope(shape: str) -> None:
             assert (run.end == "at rest") == rests, (direction, off)
 
 
-@pytest.mark.parametrize(
-    ("shape", "height", "wood"),
-    [thorough("box", 0.0, WOOD), thorough("round", 0.03, WOOD), ("round", 0.0, ICY)],
-)
-def test_axes_of_a_turntable_turn_with_it(shape: str, height: float, wood: Any) -> None:
-    thrown, turning, cx = body(shape, height), 2.5, 0.1
-    inertia = thrown.inertia_radius**2 * thrown.mass
-
-    def rates(t: float, y: np.ndarray) -> list[float]:
-        now = replace(wood, direction=wood.direction + turning * t)
-        ux, uy = y[3] + turning * y[1], y[4] - turning * (y[0] - cx)
-        state = [0.0, 0.0, y[2], ux, uy, y[5] - turning]
-        fx, fy, torque = Judge(shape, [now], None, height).forces(state, 2)
-        return [*y[3:], fx, fy, torque / inertia]
-
-    start, times = [-0.1, 0.02, 0.3, 0.45, -0.1, 7.0], [0.2, 0.4, 0.8]
-    truth = solve_ivp(rates, (0.0, 0.8), start, "DOP853", times, rtol=1e-11, atol=1e-12).y
-    launch = pt.Launch((0.45, -0.1), spin=7.0, position=(-0.1, 0.02), orientation=0.3)
-    floor = pt.Floor(orthotropic=wood, turning=turning, centre=(cx, 0.0))
-    run = pt.Scene(thrown, floor, launch, time=1.0, tol=1e-10).simulate(times)
-    for key, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
-        unit = 1.0 / ROUND if key in ("orientation", "spin") else 1.0
-        assert run.columns[key] == pytest.approx(row, abs=2e-9 * unit), key
-    assert run.energy_residual < 1e-9
-
-
 @pytest.mark.parametrize("shape", ["box", "round"])
 def test_a_turntable_carries_what_its_ellipse_holds(shape: str) -> None:
     """Radially by f along the axis that lies so under it, wherever that has turned to."""
@@ -248,17 +246,25 @@ def test_a_turntable_carries_what_its_ellipse_holds(shape: str) -> None:
 
 # of a tray: t, velocity and spin; it is as at first until 0.1, and its spin jumps at no time
 TRAY = np.array([[0.1, 0.1, 0.0, 2.0], [0.4, -0.2, 0.3, 4.0], [0.9, 0.1, 0.3, -1.0]])
+TURNTABLE = np.array([[0.0, 0.0, 0.0, 2.5], [1.0, 0.0, 0.0, 2.5]])
 
 
-@pytest.mark.parametrize(("shape", "height"), [("box", 0.02), ("round", 0.0)])
-def test_axes_of_a_tray_turn_as_it_does(shape: str, height: float) -> None:
+@pytest.mark.parametrize(
+    ("shape", "height", "wood", "rows"),
+    [
+        ("box", 0.02, WOOD, TRAY), ("round", 0.0, WOOD, TRAY),
+        *(thorough(*one, TURNTABLE) for one in (("box", 0.0, WOOD), ("round", 0.03, WOOD))),
+        thorough("round", 0.0, ICY, TURNTABLE),
+    ],
+)  # fmt: skip
+def test_axes_of_a_floor_turn_with_it(shape: str, height: float, wood: Any, rows: Any) -> None:
     """Its angle is an unknown of the judge, beside the six of the puck."""
     thrown, cx = body(shape, height), 0.1
     inertia = thrown.inertia_radius**2 * thrown.mass
 
     def rates(t: float, y: np.ndarray) -> list[float]:
-        bx, by, turning = (np.interp(t, TRAY[:, 0], TRAY[:, k]) for k in (1, 2, 3))
-        now = replace(WOOD, direction=WOOD.direction + y[6])
+        bx, by, turning = (np.interp(t, rows[:, 0], rows[:, k]) for k in (1, 2, 3))
+        now = replace(wood, direction=wood.direction + y[6])
         ux, uy = y[3] - bx + turning * y[1], y[4] - by - turning * (y[0] - cx)
         state = [0.0, 0.0, y[2], ux, uy, y[5] - turning]
         fx, fy, torque = Judge(shape, [now], None, height).forces(state, 2)
@@ -269,7 +275,8 @@ def test_axes_of_a_tray_turn_as_it_does(shape: str, height: float) -> None:
         state = solve_ivp(rates, (begin, end), state, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
         truth.append(state)
     launch = pt.Launch((0.55, -0.1), spin=9.0, position=(-0.1, 0.02), orientation=0.3)
-    floor = pt.Floor(orthotropic=WOOD, over_time=TRAY, centre=(cx, 0.0))
+    moves: Any = {"over_time": rows} if rows is TRAY else {"turning": 2.5}
+    floor = pt.Floor(orthotropic=wood, centre=(cx, 0.0), **moves)
     run = pt.Scene(thrown, floor, launch, time=0.9, tol=1e-10).simulate(times)
     keys = ("x", "y", "orientation", "vx", "vy", "spin")
     for key, row in zip(keys, np.transpose(truth), strict=False):

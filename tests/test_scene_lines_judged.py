@@ -6,21 +6,6 @@ import pytest
 from rarely import nightly, thorough
 
 
-def test_the_judge_knows_a_puck_that_dips_into_a_wall_and_comes_back():
-    scene = {
-        "puck": {"radius": 0.01, "mass": 1.0, "gyration": 0.7, "friction": 0.0},
-        "launch": {"velocity": [1.0, 0.2], "spin": 0.0, "position": [0.01, 0.0]},
-        "wall": [{"point": [0.0, 0.0], "normal": [1.0, 0.0], "restitution": 0.5}],
-        "time": 1.9, "frames": 1,
-        "drive": [[0.0, -4.0, 0.0, 0.0], [10.0, 55.0478678698, 0.0, 0.0]],
-    }  # fmt: skip
-    events = lines_judge.truth(scene)[2]
-    assert events[0, 1] == lines_judge.BOUNCES
-    t = events[0, 0]  # the place of the centre, by hand
-    assert abs(t - 2.0 * t**2 + 5.90478678698 * t**3 / 6.0) <= 1e-12
-    assert round(t, 10) == 0.8881217896
-
-
 @pytest.mark.parametrize("drawn", [(31, 468), (2, 1863)])
 @pytest.mark.parametrize("tol", [1e-4, 1e-9])
 def test_a_border_is_met_once(drawn, tol, tmp_path):

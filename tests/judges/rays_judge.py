@@ -27,6 +27,21 @@ def sides(corners: Sequence[Sequence[float]]) -> list[Curve]:
     return [(*a, *b) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
 
 
+def within(
+    outlines: Sequence[Sequence[Sequence[float]]],
+) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """Whether places lie in polygons, in an odd number of them."""
+
+    def inside(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        found = np.zeros(x.shape, bool)
+        for ax, ay, bx, by in (side for corners in outlines for side in sides(corners)):
+            if ay != by:
+                found ^= ((ay > y) != (by > y)) & (x < ax + (y - ay) / (by - ay) * (bx - ax))
+        return found
+
+    return inside
+
+
 def border(angle: float, place: float) -> Curve:
     """A straight border across a direction."""
     c, s = math.cos(angle), math.sin(angle)
