@@ -54,6 +54,7 @@ def test_a_slope_and_its_direction():
     for name, value in (("friction", 0.12), ("slope_x", 0.01), ("slope_y", -0.02)):
         assert near(result[name], value), (name, result[name])
     assert result["slope_x"].error < 1e-3
+    assert not result.forces.by_slope  # its slope is found, not taken for granted
 
 
 def test_the_speed_of_a_belt():

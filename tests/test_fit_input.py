@@ -55,6 +55,7 @@ PUCK = pt.Puck(radius=0.04)
         ({"laws": ["ring", "ring"]}, "once"),
         ({"jitter": 0.0}, "jitter must be greater than 0"),
         ({"jitter": "guess"}, "'find'"),
+        ({"law": "stribeck", "slip_speeds": (0.0, 1.0)}, "law and slip_speeds both"),
         ({"rows": (0.1, 0.1)}, "different places"),
         ({"rows": 0.5}, "first and of the last line"),
         ({"fixed": {"readout": 0.01}}, "rows="),

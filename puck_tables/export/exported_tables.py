@@ -64,9 +64,9 @@ def _fit_within(
         except AccuracyError:
             raise AccuracyError(
                 f"states of such pucks cannot be exported at tol {tol:g}, for their limit ratio "
-                "lies next to 0, infinity or an edge of the load at some height: ask for a larger "
-                "tol, for stops and resultants alone (--what stop,resultants), or for another "
-                "radius of gyration"
+                "lies next to 0, infinity or an edge of the load at some height: ask for stops "
+                "and resultants alone (--what stop,resultants), for another radius of gyration, "
+                "or for a larger tol (1e-2 at most)"
             ) from None
         of_heights = values.limit_motions.of_heights
         polynomials = height_polynomials(of_heights, len(of_heights)).T

@@ -235,6 +235,8 @@ def _refuse_pressure(spec: FitSpec, what: str) -> None:
 
 def over(spec: FitSpec, speeds: tuple[float, ...], between: str) -> FitSpec:
     """What is asked with a friction coefficient for each of these slip speeds."""
+    if spec.law:
+        raise InputError("law and slip_speeds both find friction over slip speed: give one of them")
     for name in ("decel", "gravity", "drag", *INTEGRATED, "inner"):
         if name in spec.named:
             raise InputError(

@@ -208,7 +208,7 @@ def fisher(
         errors[[k for k, name in enumerate(names) if name in minimum.numbers]] = np.inf
     if unsigned:
         errors[names.index("launch_spin")] = np.inf
-    said = [minimum_sentence(minimum, False) for minimum in alternatives]
+    said = [minimum_sentence(minimum, seen, False) for minimum in alternatives]
     said += [mirror_sentence("the film") for _ in unsigned]
     return Forecast(
         puck, velocity, spin, camera, problem.spec.free, names, seen.x, errors,

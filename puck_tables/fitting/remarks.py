@@ -147,7 +147,7 @@ def not_identifiable(
     that fit about as well; ``unsigned``: tracks that the opposite spin fits as well.
     """
     marked = result.problem.angled
-    sentences = [minimum_sentence(minimum, marked) for minimum in minima[:_IN_FULL]]
+    sentences = [minimum_sentence(one, result, marked) for one in minima[:_IN_FULL]]
     if others := len(minima[_IN_FULL:]):
         more = "motion of another spin fits" if others == 1 else "motions of other spins fit"
         sentences.append(f"{others} more {more} about as well.")
@@ -186,12 +186,12 @@ def not_identifiable(
     return tuple(sentences)
 
 
-def minimum_sentence(minimum: OtherMinimum, marked: bool) -> str:
+def minimum_sentence(minimum: OtherMinimum, taken: Estimate, marked: bool) -> str:
     """A sentence on a minimum that fits about as well; ``marked``: whether angles are seen."""
     more = "more frames a second" if marked else "angle marks on the puck"
-    words = ", ".join(
-        f"{name.replace('_', ' ')} {value:.4g}" for name, value in minimum.numbers.items()
-    )
+    here, there = minimum._replace(estimate=taken).numbers, minimum.numbers
+    said = [f"{name} {value:.4g} (here {here[name]:.4g})" for name, value in there.items()]
+    words = ", ".join(said).replace("_", " ")
     close = "as well"
     if abs(minimum.rise) > Z95**2:
         nearly = "nearly as well" if minimum.rise > 0.0 else "a little better"

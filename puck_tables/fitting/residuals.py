@@ -243,11 +243,13 @@ def side_forces(result: Estimate, certainty: Certainty) -> SideForces:
         near = [kind for kind in near if kind != SLOPE]
     slope = np.hypot(*changes[:, SLOPE].T) * gravity * math.radians(OUT_OF_LEVEL)
     fastest = problem.fastest(result.x)
+    # a slope that is asked for, or held, is not taken for granted
+    granted = not {"slope_x", "slope_y"} & {*problem.spec.named}
     return SideForces(
         min(len(_KINDS) * min(one.chance for one in shares.values()), 1.0),
         " or ".join(_KINDS[kind].format(tilt) for kind in near),
         math.degrees(shares[SLOPE].error / lengths[list(SLOPE)].max() / gravity),
-        dict(zip(problem.spec.free, slope.tolist(), strict=False)),
+        dict(zip(problem.spec.free, slope.tolist(), strict=False)) if granted else {},
         changes[:, DRAG[0]] * _LAW * decel / max(fastest, 1e-300),
         np.stack([changes[:, kind] @ forces[kind] for kind in near], axis=1),
     )  # fmt: skip
