@@ -192,8 +192,8 @@ def _of_plain(table: StopTable, xi: FloatArray) -> FloatArray:
     known, wanted = (2.0 * heights(count) ** 2 - 1.0 for count in (sides.shape[2], HEIGHTS))
     by_height = np.moveaxis(at_nodes(1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))), 2, 0)
     series = chebyshev.chebfit(known, by_height.reshape(known.size, -1), known.size - 1)
-    values = chebyshev.chebval(wanted, series).T.reshape(HEIGHTS, *by_height.shape[1:])
-    return np.moveaxis(values, (0, 1), (2, 1))
+    values = np.asarray(chebyshev.chebval(wanted, series), np.float64).T
+    return np.moveaxis(values.reshape(-1, *by_height.shape[1:]), (0, 1), (2, 1))
 
 
 law_values = lru_cache(maxsize=8)(LawValues)  # one for all files of the same pucks and error
@@ -222,8 +222,8 @@ def _limit_motions(values: LawValues) -> LimitMotions:
         gap = np.where(sides == 0, share / values.extents[0], gap)
         gap = np.where(sides == len(values.extents) - 1, -share / values.extents[-1], gap)
         place = 1.0 - np.sqrt(1.0 - np.sqrt(np.clip(gap, 0.0, 1.0)))
-        at_all = np.stack([np.diagonal(spline(place)) for spline in splines])
-        return np.take_along_axis(at_all, sides[None], axis=0)[0]
+        at_all: FloatArray = np.stack([np.diagonal(spline(place)) for spline in splines])
+        return at_all[sides, np.arange(HEIGHTS)]
 
     def friction(u: FloatArray) -> tuple[Resultants, FloatArray]:
         phi = np.where(u > 0.0, 0.5 * np.pi - np.arctan(np.exp(-u)), np.arctan(np.exp(u)))
