@@ -5,6 +5,7 @@ from blade_judge import STEPS, draw, judged, known
 from rarely import few
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("index", few(3, [8, 32, 36, 3, *range(40)]))
 def test_blades_on_turntables(index, tmp_path):
     scene = draw(1, index)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boards import draw, puck_at
+from boards import cushions, draw, puck_at
 
 import puck_tables as pt
 from puck_tables.scene.run import residual
@@ -22,13 +22,6 @@ FRAME = 1.0 / 64.0  # s: times are exact
 
 def mallet(x: float, y: float, **how: Any) -> pt.Puck:
     return pt.Puck(0.05, path=[[0.0, x, y]], name="mallet", **how)
-
-
-def cushions(side: float = 0.6) -> list[pt.Wall]:
-    return [
-        pt.Wall((-side * nx, -side * ny), normal=(nx, ny), restitution=0.8)
-        for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-    ]
 
 
 def table() -> pt.Scene:

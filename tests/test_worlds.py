@@ -7,21 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boards import draw, draw_pucks, puck_at
+from boards import cushions, draw, draw_pucks, puck_at
 
 import puck_tables as pt
 from puck_tables._core import executor
 from puck_tables.scene.run import Event
 from puck_tables.world import bench
 from puck_tables.world import engine_state as g
-
-SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-
-
-def cushions(side: float = 0.6, restitution: float = 0.8) -> list[pt.Wall]:
-    return [
-        pt.Wall((-side * x, -side * y), normal=(x, y), restitution=restitution) for x, y in SIDES
-    ]
 
 
 def table(**how: Any) -> pt.Scene:

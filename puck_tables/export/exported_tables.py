@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from math import factorial
 
 import numpy as np
@@ -50,6 +51,7 @@ def round_tables(kind: Puck, parts: tuple[str, ...], tol: float) -> Tables:
     return lines | tables, constants
 
 
+@lru_cache(maxsize=8)  # one for files in all languages
 def _fit_within(
     values: LawValues, parts: tuple[str, ...], tol: float
 ) -> dict[str, SplineFit | list[SplineFit]]:

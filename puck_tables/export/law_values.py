@@ -42,7 +42,7 @@ from puck_tables.stopping.stop_section import stops_at
 from puck_tables.stopping.stop_table import StopTable
 
 HEIGHTS = 14  # over δ, to which the splines of a file are fitted
-_COARSE, _NODES, _FINE_NODES = 1e-8, 385, 1025  # of a side: finer errors take more cells
+_COARSE, _NODES, _FINE_NODES = 3e-7, 385, 1025  # of a side: finer errors take more cells
 REACH = 16.0  # of z, the scale along an orbit
 TURN_UNIT = 1.5  # of headings: they take less of the error than places on the orbits do
 _FINEST, _SHARE = 2e-11, 0.02  # of stops; of the error asked for

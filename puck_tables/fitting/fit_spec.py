@@ -144,8 +144,13 @@ class FitSpec:
     law : a law over slip speed by its name, '' for none
     base : of a puck that is not round; its reach is then the radius of ``puck``, gyration is in m
 
-    Raises InputError if the friction is neither free nor known.
+    Raises
+    ------
+    InputError
+        If the friction is neither free nor known.
 
+    Examples
+    --------
     >>> spec = FitSpec(Puck(radius=0.0381), ("friction", "delta"), {}, {}, {}, {})
     >>> spec.scales({"friction": 0.2, "delta": 0.5})[0]
     1.96133
