@@ -2,8 +2,9 @@
 
 Places are those of c = (r|ω| − v)/(r|ω| + v) between *marks*: pure sliding, the lines where the
 centre of rotation crosses an edge of the load, pure spin.  A side reaches from mark to mark, the
-first upwards, all others downwards: |c − origin| = extent · q², q = ξ (2 − ξ), with nodes close at
-both ends.  Friction is splined over q = 1 − (1 − ξ)⁴, closer still at the lines.  Heights are a
+first upwards, all others downwards: |c − origin| = extent · q², with nodes close at both ends: of
+stops q = ξ² (2 − ξ)², as on the axis of the stop table (:mod:`puck_tables.stopping.lookup`), of
+friction q = 1 − (1 − ξ)⁴, closest at the lines.  Heights are a
 share of the largest under which the whole base stays loaded,
 :data:`puck_tables.contact.laws.Law.delta_max`.
 
@@ -169,7 +170,7 @@ class LawValues:
         if self.pucks[0].body.is_plain:
             return _of_plain(StopTable.shipped(), self.xi)
         accuracy = max(_FINEST, _SHARE * self.tol)
-        result, phi = [], self._angles(self.xi * (2.0 - self.xi))
+        result, phi = [], self._angles((self.xi * (2.0 - self.xi)) ** 2)
         for puck in self.pucks:
             friction = puck.body.friction(0.1 * accuracy)
             section = friction.for_motion(puck.gyration)
@@ -190,7 +191,7 @@ def _of_plain(table: StopTable, xi: FloatArray) -> FloatArray:
     sides = np.stack([table.values[: n + 1], table.values[: n - 1 : -1]], axis=1)[..., :5]
     at_nodes = make_interp_spline(np.linspace(0.0, 1.0, n + 1), sides, 5)
     known, wanted = (2.0 * heights(count) ** 2 - 1.0 for count in (sides.shape[2], HEIGHTS))
-    by_height = np.moveaxis(at_nodes(1.0 - np.sqrt(1.0 - np.sqrt(xi * (2.0 - xi)))), 2, 0)
+    by_height = np.moveaxis(at_nodes(xi), 2, 0)
     series = chebyshev.chebfit(known, by_height.reshape(known.size, -1), known.size - 1)
     values = np.asarray(chebyshev.chebval(wanted, series), np.float64).T
     return np.moveaxis(values.reshape(-1, *by_height.shape[1:]), (0, 1), (2, 1))
@@ -221,7 +222,7 @@ def _limit_motions(values: LawValues) -> LimitMotions:
         gap = (c - values.origins[sides]) / values.extents[sides]
         gap = np.where(sides == 0, share / values.extents[0], gap)
         gap = np.where(sides == len(values.extents) - 1, -share / values.extents[-1], gap)
-        place = 1.0 - np.sqrt(1.0 - np.sqrt(np.clip(gap, 0.0, 1.0)))
+        place = 1.0 - np.sqrt(1.0 - np.clip(gap, 0.0, 1.0) ** 0.25)
         at_all: FloatArray = np.stack([np.diagonal(spline(place)) for spline in splines])
         return at_all[sides, np.arange(HEIGHTS)]
 

@@ -146,7 +146,8 @@ def export_source(
     AccuracyError
         If the tolerance is out of reach: of states, where the limit ratio lies next to 0, to
         infinity or to where the centre of rotation crosses an edge of the load; of stops, on a ring
-        below 3e-9, under Galin's law on a homogeneous puck below 2e-8.
+        below 1e-8, under Galin's law on a homogeneous puck below 2e-8, and where the radius of
+        gyration is next to 0.1 r or beyond 4 r.
 
     Notes
     -----

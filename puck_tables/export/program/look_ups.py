@@ -81,20 +81,21 @@ def side_of(c: float) -> int:
     return side
 
 
-def place_of(side: int, c: float) -> float:
-    """The place xi between the marks of a side: 0 at its origin, 1 at the next."""
-    q: float = (c - ORIGINS[side]) * SCALES[side]
-    q = sqrt(q if q > 0.0 else 0.0)
-    return 1.0 - sqrt(1.0 - q if q < 1.0 else 0.0)
+def root_of(side: int, c: float) -> float:
+    """The root of the share of a side that lies between its origin and a place, from 0 to 1."""
+    share: float = (c - ORIGINS[side]) * SCALES[side]
+    share = share if share > 0.0 else 0.0
+    return sqrt(share if share < 1.0 else 1.0)
 
 
 def stop_table_at(c: float, delta: float, f: Out) -> None:
     """T, along, across, path length and body angle by look-up."""
     side: int = side_of(c)
+    xi: float = 1.0 - sqrt(1.0 - sqrt(root_of(side, c)))
     look_up(
         STOP, STOP_ROWS[side] * STOP_POWERS * STOP_FUNCTIONS,
         STOP_ROWS[side + 1] - STOP_ROWS[side] - STOP_DEGREE, STOP_DEGREE, STOP_POWERS,
-        STOP_FUNCTIONS, STOP_QUANTUM, place_of(side, c), STEEP * delta * delta - 1.0, f,
+        STOP_FUNCTIONS, STOP_QUANTUM, xi, STEEP * delta * delta - 1.0, f,
     )  # fmt: skip
 
 
@@ -106,7 +107,7 @@ def looked_up_integrals(ratio: float, fast: bool, p: Out) -> None:
     look_up(
         PATCH, PATCH_ROWS[side] * PATCH_FUNCTIONS,
         PATCH_ROWS[side + 1] - PATCH_ROWS[side] - PATCH_DEGREE, PATCH_DEGREE, 1, PATCH_FUNCTIONS,
-        PATCH_QUANTUM, 1.0 - sqrt(1.0 - place_of(side, c)), 0.0, p,
+        PATCH_QUANTUM, 1.0 - sqrt(sqrt(1.0 - root_of(side, c))), 0.0, p,
     )  # fmt: skip
 
 
