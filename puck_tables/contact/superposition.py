@@ -10,6 +10,8 @@ so closed forms serve for all.  The thin ring is the limit of washers, an integr
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -31,6 +33,7 @@ _SHARES /= _SHARES.sum()
 _FAR_NODES, _FAR_SHARES = np.polynomial.legendre.leggauss(14)
 _FAR_NODES, _FAR_SHARES = 0.5 * (1.0 + _FAR_NODES), 0.5 * _FAR_SHARES
 _CHUNK = 64  # points at once: their rules fit the cache
+_KEPT = 100_000  # angles at once whose integrals are kept: 50 MB in all at most
 
 
 def disc_integrals(phi: npt.ArrayLike, radius: FloatArray) -> FloatArray:
@@ -105,13 +108,22 @@ def profile_integrals(
     >>> float(p.a.round(12)) == float(disc_integrals(0.3, np.ones(()))[0].round(12))
     True
     """
-    angle = np.ravel(slip_angle := np.asarray(phi, dtype=np.float64))
+    angle = np.asarray(phi, dtype=np.float64)
+    find = _sums if angle.size <= _KEPT else _sums.__wrapped__
+    total = find(angle.tobytes(), radii.tobytes(), pressure.tobytes())
+    load = float(_load(radii, pressure))
+    return _five(total.reshape(3, *angle.shape) / load)
+
+
+@lru_cache(maxsize=16)  # pucks of many heights ask for the same angles
+def _sums(*arrays: bytes) -> FloatArray:
+    """The sums of all discs (3, n), of the bytes of angles, radii and pressures."""
+    angle, radii, pressure = (np.frombuffer(one) for one in arrays)
     total = np.empty((3, angle.size))
     for start in range(0, angle.size, _CHUNK):
         part = angle[start : start + _CHUNK]
         total[:, start : start + _CHUNK] = _pile(part, radii, pressure)
-    load = float(_load(radii, pressure))
-    return _five(total.reshape(3, *slip_angle.shape) / load)
+    return total
 
 
 def _load(radii: FloatArray, pressure: FloatArray) -> FloatArray:
