@@ -45,6 +45,7 @@ PUCK = pt.Puck(radius=0.04)
         ({"bounds": {"delta": (5.0, 9.0)}}, "delta is from 0 to 4"),
         ({"bounds": {"decel": (-2.0, 0.0)}}, "decel is greater than 0 (m/s^2)"),
         ({"start": {"gyration": 0.7}}, "not free"),
+        ({"start": {"friction": 0.1}, "bounds": {"friction": (0.4, 0.5)}}, "outside its bounds"),
         ({"noise": 3e-4}, "and of angles"),
         ({"noise": (0.0, 1e-3)}, "greater than 0"),
         ({"since": 5.0}, "0 frames in the time asked for"),

@@ -175,10 +175,17 @@ def spec_of(
         raise InputError(
             "inner is the inner radius of an annulus: give the puck the pressure 'annulus:0.8'"
         )
+    ranges = {n: bounds_of(n, v, every) for n, v in bounds.items()}
+    begun = {n: in_range(n, v, every) for n, v in start.items()}
+    for name, (low, high) in ranges.items():
+        if not low <= begun.get(name, low) <= high:
+            raise InputError(
+                f"the start of {name}, {begun[name]:g}, lies outside its bounds, {low:g} to "
+                f"{high:g}: give one within them, or none"
+            )
     return FitSpec(
-        puck, wanted, known, {n: prior_of(n, v, every) for n, v in priors.items()},
-        {n: bounds_of(n, v, every) for n, v in bounds.items()},
-        {n: in_range(n, v, every) for n, v in start.items()}, freed, base=base,
+        puck, wanted, known, {n: prior_of(n, v, every) for n, v in priors.items()}, ranges, begun,
+        freed, base=base,
     )  # fmt: skip
 
 
