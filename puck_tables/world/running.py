@@ -261,9 +261,7 @@ class Running(Playing):
         count, lines = int(self._engine.counts[g.N_EVENTS]), self.scene.lines
         if first == count and passed == len(self._passings.rows):
             return []
-        rows = self._engine.events[first:count]
-        columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
-                   g.RUB, g.LOST]  # fmt: skip
+        rows = self._engine.events[first:count, : g.REPORTED]
         events = [
             Event(
                 time,
@@ -272,7 +270,7 @@ class Running(Playing):
                 "floor" if what == g.TIPS else self._name(partner),
                 *numbers,
             )
-            for time, what, who, partner, *numbers in rows[:, columns].tolist()
+            for time, what, who, partner, *numbers in rows.tolist()
         ]
         events += [
             Event(time, g.EVENTS[int(what)], self._name(who), called_line(lines, int(k)), *numbers)
