@@ -62,8 +62,9 @@ class Engine(NamedTuple):
     :mod:`puck_tables.world.floor_under`; ``floors`` what of it stands in its row there (places · n,
     5): deceleration, δ, whether it is integrated, and the velocity of the floor, which a disc takes
     over when it comes there; ``surface``: how the floor moves, of belts the fastest; ``forcing``,
-    ``spans``: see :class:`puck_tables.world.group.Group`; ``rims``: the laws
-    by which they meet (:mod:`puck_tables.world.layout`).  ``clock`` (1,): now.  ``group``
+    ``spans`` (n, 2): what changes over time under each disc (:mod:`puck_tables.scene.over_time`),
+    from its first row to the last + 1; ``rims``: the laws by which they meet
+    (:mod:`puck_tables.world.layout`).  ``clock`` (1,): now.  ``group``
     (n,): discs of one number push each other, 0: none; ``held`` (…, 2): their contacts.
     ``next_time``, ``next_partner`` (n,).  ``launches`` (…, 5), ascending in time.  ``drives``
     (n, 2): the rows of ``pieces`` along which a disc is driven.  ``hangs`` (n, edges): whether its

@@ -120,8 +120,8 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
         un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
         row[ACTS] = 1.0 if abs(un) <= HARDLY * engine.scale[0] else 0.0
         # what neither presses nor parts is a group, too: alone, both would look for each other
-        moves = slips(engine.surface, engine.discs[i], room.states[i])
-        moves = moves or (j >= 0 and slips(engine.surface, engine.discs[j], room.states[j]))
+        moves = slips(engine, i, room.states[i])
+        moves = moves or (j >= 0 and slips(engine, j, room.states[j]))
         least = HARDLY * engine.scale[1] if moves else -HARDLY * engine.scale[1]
         if row[ACTS] > 0.0 and opening(engine, i, j, t, row, room.states) < least:
             pressed = True
@@ -131,9 +131,8 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
 @inlined
 def sets_off_too_fast(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
-    ux, uy, w = over_floor(engine.surface, engine.discs[i], state)
-    free = engine.discs[i, INV_MASS] > 0.0
-    return free and outruns_law(engine.regions, engine.discs[i, RADIUS], ux, uy, w)
+    ux, uy, w = over_floor(engine, i, state)
+    return engine.discs[i, INV_MASS] > 0.0 and outruns_law(engine, i, ux, uy, w)
 
 
 @inlined
@@ -142,9 +141,9 @@ def is_integrated(engine: Engine, i: int, state: FloatArray) -> bool:
     disc = engine.discs[i]
     if disc[INTEGRATED] == 0.0 or engine.kinds[i] == GONE:
         return False
-    if slips(engine.surface, disc, state) or engine.surface.spin != 0.0 or disc[TWIST] != 0.0:
+    if slips(engine, i, state) or engine.surface.spin != 0.0 or disc[TWIST] != 0.0:
         return True
-    if is_over_belts(engine.regions, engine.discs, i):
+    if is_over_belts(engine, i):
         return True
     forced = engine.spans[i, 0] < engine.spans[i, 1]
     holds = disc[DECEL] if disc[INTEGRATED] == 1.0 else 0.0
@@ -163,7 +162,7 @@ MOST_BACK = 64  # events
 @inlined
 def _slip2(engine: Engine, i: int, states: FloatArray) -> float:
     """Q² of a disc over the floor."""
-    vx, vy, spin = over_floor(engine.surface, engine.discs[i], states[i])
+    vx, vy, spin = over_floor(engine, i, states[i])
     rim = engine.discs[i, RADIUS] * spin
     return vx**2 + vy**2 + rim * rim
 
