@@ -27,7 +27,7 @@ from puck_tables.world.lasting import (
     next_target,
 )
 from puck_tables.world.layout import INV_MASS
-from puck_tables.world.named_pucks import called, pucks_of
+from puck_tables.world.named_pucks import names_of, pucks_of
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
 from puck_tables.world.playing import Playing
@@ -66,8 +66,7 @@ class Running(Playing):
     def _named(self) -> None:
         """Who is where in the engine's order, and what they are called."""
         self._place = np.argsort(self._order)
-        pucks = pucks_of(self.scene)
-        self.names = tuple(called(puck, number) for number, puck in enumerate(pucks))
+        self.names = names_of(self.scene)
         self._obstacles = obstacle_names(self.scene)
 
     def __repr__(self) -> str:
@@ -140,9 +139,7 @@ class Running(Playing):
 
     def over(self, times: npt.ArrayLike) -> FloatArray:
         """States at times of the past, ascending, array (times, pucks, 6)."""
-        moments = np.atleast_1d(finite_array("times", times, "s"))
-        if moments.ndim != 1 or (np.diff(moments) < 0.0).any() or (moments < 0.0).any():
-            raise InputError("times must be a list of ascending numbers >= 0 s")
+        moments = ascending(times)
         if moments.size and moments[-1] > self.time:
             raise InputError(
                 f"times must not lie after now, {self.time:g} s: advance before, or use at"
@@ -322,6 +319,14 @@ class Running(Playing):
                 "or strike it"
             )
         return i
+
+
+def ascending(times: npt.ArrayLike) -> FloatArray:
+    """When states are wanted, checked."""
+    moments = np.atleast_1d(finite_array("times", times, "s"))
+    if moments.ndim != 1 or (moments < 0.0).any() or (np.diff(moments) < 0.0).any():
+        raise InputError("times must be a list of ascending numbers >= 0 s")
+    return moments
 
 
 def span_of(duration: float) -> float:
