@@ -13,7 +13,8 @@ from puck_tables.scene.floor_map import NO_FLOOR_MAP
 from puck_tables.scene.forces import QUADRATIC, SLIDING, SPINNING
 from puck_tables.scene.ingredients import Regions, Surface
 from puck_tables.world import pressing, pushing
-from puck_tables.world.group import APART, HELD, Group, Scales, buffer_for
+from puck_tables.world.engine_state import Engine
+from puck_tables.world.group import APART, HELD, Scales, buffer_for
 from puck_tables.world.layout import (
     ARC,
     DISC_COLUMNS,
@@ -77,15 +78,17 @@ def group_of(discs, obstacles=(), pull=(0.0, 0.0), films=None, cuts=None):
         reels[number] = first, first + len(film)
     if cuts is None:
         cuts = np.zeros((len(discs), *NO_SECTION.shape))
-    return Group(
-        discs, padded(obstacles),
-        Regions(
-            mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW, np.zeros(len(discs), np.bool_),
-            NO_FLOOR_MAP, np.zeros((len(discs), 2), np.int64),
-        ),
-        Surface(*[0.0] * 9, 1.0), np.zeros(1), np.vstack(rows), reels,
-        np.zeros((0, 4)), np.zeros((len(discs), 2), np.int64),
+    regions = Regions(
+        mass * discs[:, 3], discs[:, 4].copy(), cuts, NO_LAW, np.zeros(len(discs), np.bool_),
+        NO_FLOOR_MAP, np.zeros((len(discs), 2), np.int64),
     )  # fmt: skip
+    read = {
+        "discs": discs, "obstacles": padded(obstacles), "regions": regions,
+        "surface": Surface(*[0.0] * 9, 1.0), "rims": np.zeros(1), "pieces": np.vstack(rows),
+        "drives": reels, "forcing": np.zeros((0, 4)),
+        "spans": np.zeros((len(discs), 2), np.int64),
+    }  # fmt: skip
+    return Engine(**dict.fromkeys(Engine._fields, np.zeros(0)) | read)
 
 
 def pull_of(group):

@@ -36,9 +36,9 @@ from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
 from puck_tables.motion.unit_motion import frame_of
 from puck_tables.stopping.launch_arrays import launches_in
+from puck_tables.stopping.launch_derivatives import fill_placed_states
 from puck_tables.stopping.solvers import followed
 from puck_tables.stopping.state_values import directions, fill_state_slopes, looked_up
-from puck_tables.stopping.stop_jacobian import fill_placed_states
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.variational import Variations, unit_states, variations_by
 from puck_tables.table.friction_section import slopes_at_one_height, slopes_of_table

@@ -187,16 +187,19 @@ def fill_state_variations(
 ) -> None:  # fmt: skip
     """Varied states at z (n,) of one motion into ``out`` (n, 21), and their d/dz into ``rates``.
 
-    ``which`` (n,): the last step end before; ``path``, ``stop`` of :func:`vary`.
+    At rest, z = 1, that of the stop, and 0.  ``which`` (n,): the last step end before; ``path``,
+    ``stop`` of :func:`vary`.
     """
     work = np.empty((8, VARIED))
     last = z_path.size - 1
     for n in range(z.size):
         patience(1)
-        i = which[n]
-        y = out[n]
+        i, y = which[n], out[n]
         for j in range(VARIED):
-            y[j] = path[i, j]
+            y[j] = path[i, j] if z[n] < 1.0 else stop[j]
+            rates[n, j] = 0.0
+        if z[n] == 1.0:
+            continue
         if i < last:
             advance(z_path[i], z[n], y, tableau, section, work)
             variation_rates(z[n], y, section, rates[n])

@@ -279,7 +279,7 @@ def integrated_jacobians(
 
     ``which`` (n,): of ``launches`` (6, m), at ``moments`` (n,).
     """
-    from puck_tables.stopping.stop_jacobian import fill_placed_states
+    from puck_tables.stopping.launch_derivatives import fill_placed_states
     from puck_tables.stopping.variational import unit_states, variations_of
 
     frictions = {height: variations_of(body) for height, body in bodies.items()}

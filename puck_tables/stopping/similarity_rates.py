@@ -34,16 +34,16 @@ from puck_tables.kernels.compile import (
 from puck_tables.kernels.elementary import logs_of
 from puck_tables.kernels.quadratic import basis
 from puck_tables.stopping import similarity_lookup as known
-from puck_tables.stopping.lookup import CONSTANT_HEIGHTS, HEIGHTS
-from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, TINY, cell_of
-from puck_tables.stopping.slopes import RATE_WIDTH, STATE_WIDTH, STOP_POWERS
-from puck_tables.stopping.stop_jacobian import (
+from puck_tables.stopping.launch_derivatives import (
     PLACED_STATES,
     Numbers,
     direction,
     rotated,
     stop_by_speeds,
 )
+from puck_tables.stopping.lookup import CONSTANT_HEIGHTS, HEIGHTS
+from puck_tables.stopping.similarity_lookup import LAUNCH_COLUMNS, TINY, cell_of
+from puck_tables.stopping.slopes import RATE_WIDTH, STATE_WIDTH, STOP_POWERS
 
 PART = 32  # places of a block: with so many rows the nearest cache holds no more
 _SHARED = 2  # rows for each place for which it pays to have them evaluated once
@@ -68,7 +68,7 @@ FACTS = STOP + STOP_ROWS
 # where a state is, what stands there, and its derivatives
 MOMENT, LEFT, TURNED, SHARE, FAST, _FIRST, _INSIDE = range(FACTS, FACTS + 7)
 AT_PLACE = FACTS + 7
-WORK, WORK_ROWS = AT_PLACE + SECTION_WIDTH, 18
+WORK, WORK_ROWS = AT_PLACE + SECTION_WIDTH, 16
 PUT = WORK + WORK_ROWS
 _NEAR = PUT + PLACED_STATES  # from here on rows of the table next to a block of places
 ROWS = PUT + 2 * PLACED_STATES
@@ -173,7 +173,7 @@ def find_functions(room: FloatArray, states: FloatArray, rates: FloatArray, cell
 
 @inlined
 def of_stop(result: Numbers, delta: float) -> Numbers:
-    """What :func:`puck_tables.stopping.stop_jacobian.stop_by_speeds` reads; of the path nothing."""
+    """What ``stop_by_speeds`` reads; of the path nothing."""
     k = 4.0 * delta
     return (
         result[_T], result[_ALONG], result[_ACROSS], result[_BODY], 0.0,

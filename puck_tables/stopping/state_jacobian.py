@@ -2,19 +2,16 @@
 
 In natural units (Q = J = r = 1 at the launch, spin positive, start along x) a motion is a place u
 on the curve of :mod:`puck_tables.stopping.similarity`, du/d ln Q = −ρ, and ln Q − g(u, δ) stays the
-same along it, g_u = −1/ρ.  The time that is left is Q T(u, δ).  So a change of slip angle or
-height, with changes of u at the launch, and of its stop time t₀, changes the state at the time t by
+same along it, g_u = −1/ρ.  The time that is left is Q T(u, δ).  So a change of u at the launch, or
+of δ, changes u at the same Q by
 
-    δu = (T Y − ρ W)/M,    δ ln Q = (W − T_u Y)/M,    M = T − ρ T_u,
-    W = δt₀/Q − T_δ δδ,    Y = ρ [δu/ρ (launch) + (g_δ − g_δ(launch)) δδ] .
+    u_p = ρ [δu/ρ (launch) + (g_δ − g_δ(launch)) δδ] .
 
 ρ = (c − c₀) P with the ratio of c − c₀ here and at the launch from its logarithm: nothing is
 divided by what vanishes for a launch at the limit ratio.  The heading is h₀ ln Q + Σ(u, δ), and
-what is left of the way is that of a stop from here, whose derivatives are known
-(:mod:`puck_tables.stopping.stop_jacobian`).  Where a state stands on the curve its value says.
-
-Over Q the similarity gives them: places and body angles grow like Q², velocities like Q, times like
-Q.  With φ that makes those by v = Q cos φ and rω = Q sin φ.
+what is left of time and way is that of a stop from here, whose derivatives are known.  Where a
+state stands on the curve its value says; the rest is the chain rule of all pucks
+(:mod:`puck_tables.stopping.launch_derivatives`).
 
 Exact pure sliding and pure spin have the derivatives of launches 1e-25 beside them: the first
 derivatives are continuous there.
@@ -41,6 +38,15 @@ from puck_tables.kernels.compile import (
 )
 from puck_tables.kernels.elementary import cosine_sine_of, exp_of, logs_of
 from puck_tables.motion import state
+from puck_tables.stopping.launch_derivatives import (
+    PLACED_STATES,
+    Numbers,
+    at_same_time,
+    by_launch,
+    placed_state,
+    rotated,
+    stop_by_speeds,
+)
 from puck_tables.stopping.similarity_lookup import TINY
 from puck_tables.stopping.similarity_rates import (
     AT_PLACE,
@@ -54,7 +60,6 @@ from puck_tables.stopping.similarity_rates import (
     FIXED_ROWS,
     FROM_LAUNCH,
     FROM_LAUNCH_ROWS,
-    H0,
     H0_TILT,
     HERE,
     HERE_ROWS,
@@ -93,22 +98,13 @@ from puck_tables.stopping.similarity_rates import (
     turn_rate,
 )
 from puck_tables.stopping.state_lookup import gather
-from puck_tables.stopping.stop_jacobian import (
-    BY_HEIGHT,
-    PLACED_STATES,
-    Numbers,
-    T,
-    placed_state,
-    rotated,
-    row_by_row,
-    stop_by_speeds,
-)
+from puck_tables.stopping.stop_jacobian import row_by_row
 
 # rows of a block for what is found on the way
-_RATES, _RATE_ROWS, _FALL, _GAP, _POLE = WORK, 9, WORK + 2, WORK + 6, WORK + 7
-_LOGS, _LOG_ROWS = WORK + 9, 3
-_CHANGE, _CHANGE_ROWS, _DIRECTIONS = WORK + 12, 4, WORK + 16
-_H0, _T0, _ONE_POLE = FIXED + H0, FROM_LAUNCH + 2, FROM_LAUNCH + 6
+_RATES, _RATE_ROWS, _SLIP, _GAP, _POLE = WORK, 7, WORK + 2, WORK + 4, WORK + 5
+_LOGS, _LOG_ROWS = WORK + 7, 3
+_CHANGE, _CHANGE_ROWS, _DIRECTIONS = WORK + 10, 4, WORK + 14
+_T0, _ONE_POLE = FROM_LAUNCH + 2, FROM_LAUNCH + 6
 _T, _ALONG, _T_SLOPE = 0, 1, SECTION_WIDTH - 4  # of what is found at a place
 
 
@@ -131,7 +127,7 @@ def _find_places(room: FloatArray) -> None:
 
 @inlined
 def _find_rates(room: FloatArray) -> None:
-    """How fast Q, u and the heading change where the states are."""
+    """Q, and how fast Q, u and the heading change, where the states are."""
     for n in range(PART):
         is_fast, share = row_of(room, FAST, n) > 0.0, row_of(room, SHARE, n)
         fixed = rows_of(room, FIXED, FIXED_ROWS, n)
@@ -154,8 +150,8 @@ def _find_rates(room: FloatArray) -> None:
         pole = -fixed[KAPPA] * one_below
         rate = gap * pole
         rates = (
-            cosine, sine, to_go * (to_go * inverse), t * (t * inverse), t_slope, one_slope, gap,
-            pole, turn_rate(rate, cosine, sine, delta, one_along, result),
+            cosine, sine, to_go * (to_go * inverse), t * (t * inverse) * one_slope, gap, pole,
+            turn_rate(rate, cosine, sine, delta, one_along, result),
         )  # fmt: skip
         into_rows(room, _RATES, n, rates)
 
@@ -165,7 +161,7 @@ def _find_logs(room: FloatArray) -> None:
     """Logarithms of 2w, 2 − 2w and Q."""
     for n in range(PART):
         share = row_of(room, SHARE, n)
-        logs = logs_of(max(share, TINY), 2.0 - share, row_of(room, _FALL, n))
+        logs = logs_of(max(share, TINY), 2.0 - share, row_of(room, _SLIP, n))
         into_rows(room, _LOGS, n, logs)
 
 
@@ -200,91 +196,62 @@ def _find_coefficients(room: FloatArray) -> None:
 
 
 @inlined
-def _change(
-    u0: float, elapsed: float, tilt: float, gone: Numbers, rates: Numbers, here: Numbers,
-    coefficients: Numbers, own: Numbers,
+def _at_same_q(
+    u: float, turn: float, tilt: float, stopped: tuple[float, float, float, float], around: float,
+    moving: Numbers, own: Numbers,
 ) -> Numbers:  # fmt: skip
-    """How a state changes with its launch: what is left of x, y, body angle; vx, vy, rω.
+    """How u, heading, time, x, y and body angle change at the same Q, for ``at_same_time``.
 
-    ``u0``: of u at the launch; ``elapsed``: of its stop; ``tilt``: of δ.
+    ``u``, ``turn``, ``tilt``: changes of u, of the heading, of δ; ``stopped``: of the stop: time,
+    x, y, body angle; ``around``: −1 for clockwise spin, then the mirror image; ``own``: the stop
+    from there.
     """
-    speed, rim, cosine, sine, one_slip, ex, ey, fx, fy = gone
-    t, t_slope, t_tilt, rate, one_slope, h0, deflection, begun = rates
-    flown, raised, turn_slope, turned = coefficients
-    _, _, turn0, _, far0, is_far = here
-    if tilt == 0.0:
-        w, y = elapsed * one_slip, flown * u0
-    else:
-        w, y = elapsed * one_slip - t_tilt, raised
-    u = (t * y - rate * w) * one_slope
-    log_q = (w - t_slope * y) * one_slope
-    turn = h0 * log_q + turn_slope * u
-    if tilt == 0.0:
-        turn = deflection * ((w - t * begun) * one_slope) + far0 if is_far > 0.0 else turn - turn0
-    else:
-        turn += turned
-    v = speed * (log_q - sine * (sine * u))
-    a = rim * (log_q + cosine * (cosine * u))
-    aside = speed * turn
+    time, x, y, body = stopped
+    speed, rim, c, s, east, north, _, _, _ = moving
+    v, a, aside = -speed * (s * (s * u)), rim * (c * (c * u)), speed * turn
     # what is left of the way
-    along = own[5] * v + own[6] * a - own[8] * aside
-    left = own[9] * v + own[10] * a + own[4] * aside
-    body = own[17] * v + own[18] * a
-    if tilt != 0.0:
-        along, left, body = along + own[7], left + own[11], body + own[19]
+    along = own[5] * v + own[6] * a - own[8] * aside + own[7] * tilt
+    left = around * (own[9] * v + own[10] * a + own[4] * aside + own[11] * tilt)
     return (
-        along * ex + left * fx, along * ey + left * fy, body, v * ex + aside * fx,
-        v * ey + aside * fy, a,
+        u, around * turn, time - (own[1] * v + own[2] * a + own[3] * tilt),
+        x - (along * east - left * north), y - (along * north + left * east),
+        body - (own[17] * v + own[18] * a + own[19] * tilt),
     )  # fmt: skip
 
 
 @inlined
 def _state_slopes(
-    left: float, delta: float, around: float, launch_row: Numbers, h0: float, here: Numbers,
-    stop: Numbers, result: Numbers, moving: Numbers, coefficients: Numbers, directions: Numbers,
+    left: float, delta: float, around: float, launch_row: Numbers, here: Numbers, stop: Numbers,
+    result: Numbers, rates: Numbers, coefficients: Numbers, directions: Numbers,
 ) -> Numbers:  # fmt: skip
-    """A state and its derivatives in natural units, along x and y, six rows of six.
+    """A state and its derivatives along x and y, six rows of six, see ``by_launch``.
 
-    Where the share ``left`` of time is left: 0 at rest.  Rows: x, y, body angle, vx, vy, rω.
-    Columns: itself; by v, v across, rω, δ, time.
+    Where the share ``left`` of time is left: 0 at rest.
     """
     speed0, rim0, t0, one_speed, u0, begun, _ = launch_row
-    cosine, sine, slip, one_slip, t_slope, one_slope, gap, pole, deflection = moving
-    k = 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
-    from_stop, rate = of_stop(result, delta), gap * pole
+    cosine, sine, slip, fall, gap, pole, swing = rates
+    flown, raised, turn_slope, turned = coefficients
+    _, _, turn0, _, far0, is_far = here
+    slip *= 1.0 if left > 0.0 else 0.0  # at rest that of the stop alone
     speed, rim = slip * cosine, slip * sine
-    own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, from_stop)
+    own = stop_by_speeds(speed, rim, slip, cosine, sine, delta, of_stop(result, delta))
     ex, ey = directions
-    fx, fy = -around * ey, around * ex
-    gone = speed, rim, cosine, sine, one_slip, ex, ey, fx, fy
-    rates = from_stop[T], t_slope, from_stop[BY_HEIGHT + T], rate, one_slope, h0, deflection, begun
-    common = gone, rates, here, coefficients, own
-    # by φ and by δ
-    x1, y1, b1, p1, q1, a1 = _change(u0, stop[0], 0.0, *common)
-    x4, y4, b4, p4, q4, a4 = _change(0.0, stop[1], 1.0, *common)
-    # by time: velocity and acceleration
-    log_q = -k * (one_slip * one_slope)
-    u = -rate * log_q
-    ahead, aside = speed * (log_q - sine * (sine * u)), speed * (deflection * log_q)
-    p5, q5 = ahead * ex + aside * fx, ahead * ey + aside * fy
-    a5 = rim * (log_q + cosine * (cosine * u))
-    vx, vy, a = k * speed * ex, k * speed * ey, k * rim
-    ahead, aside = k * (speed * one_speed) * own[4], k * (speed * one_speed) * own[8]
-    x, y = stop[2] - (ahead * ex + aside * fx), stop[5] - (ahead * ey + aside * fy)  # over v
-    b = stop[8] - k * own[16]
-    x1, y1, b1 = stop[3] - k * x1, stop[6] - k * y1, stop[9] - k * b1
-    p1, q1, a1 = k * p1, k * q1, k * a1
-    # by ln Q, from the similarity
-    time, twice = (1.0 - left) * t0, 2.0 * speed0
-    x0, y0, b0 = twice * x - time * vx, twice * y - time * vy, 2.0 * b - time * a
-    p0, q0, a0 = vx - time * p5, vy - time * q5, a - time * a5
-    return (
-        speed0 * x, speed0 * x0 - rim0 * x1, -y, rim0 * x0 + speed0 * x1, stop[4] - k * x4, vx,
-        speed0 * y, speed0 * y0 - rim0 * y1, x, rim0 * y0 + speed0 * y1, stop[7] - k * y4, vy,
-        b, speed0 * b0 - rim0 * b1, 0.0, rim0 * b0 + speed0 * b1, stop[10] - k * b4, a,
-        vx, speed0 * p0 - rim0 * p1, -vy * one_speed, rim0 * p0 + speed0 * p1, k * p4, p5,
-        vy, speed0 * q0 - rim0 * q1, vx * one_speed, rim0 * q0 + speed0 * q1, k * q4, q5,
-        a, speed0 * a0 - rim0 * a1, 0.0, rim0 * a0 + speed0 * a1, k * a4, a5,
+    moving = speed, rim, cosine, sine, ex, ey, fall, gap * pole, around * swing
+    u = flown * u0
+    turn = far0 - swing * begun if is_far > 0.0 else turn_slope * u - turn0
+    ahead, aside = speed * own[4], around * (speed * own[8])
+    value = (
+        speed0 * stop[2] - (ahead * ex - aside * ey), speed0 * stop[5] - (ahead * ey + aside * ex),
+        stop[8] - own[16], speed * ex, speed * ey, rim,
+    )  # fmt: skip
+    by_angle = (stop[0], stop[3], stop[6], stop[9])
+    by_height = (stop[1], stop[4], stop[7], stop[10])
+    tilted = turn_slope * raised + turned
+    return by_launch(
+        speed0, rim0, one_speed, (1.0 - left) * t0, value,
+        at_same_time(_at_same_q(u, turn, 0.0, by_angle, around, moving, own), moving),
+        at_same_time(_at_same_q(raised, tilted, 1.0, by_height, around, moving, own), moving),
+        at_same_time((0.0, 0.0, -1.0, 0.0, 0.0, 0.0), moving),
     )  # fmt: skip
 
 
@@ -302,10 +269,10 @@ def _find_jacobians(room: FloatArray) -> None:
         around = 1.0 if spin >= 0.0 else -1.0
         own = _state_slopes(
             row_of(room, LEFT, n), row_of(room, DELTA, n), around,
-            rows_of(room, FROM_LAUNCH, FROM_LAUNCH_ROWS, n), row_of(room, _H0, n),
-            rows_of(room, HERE, HERE_ROWS, n), rows_of(room, STOP, STOP_ROWS, n),
-            rows_of(room, AT_PLACE, SECTION_WIDTH, n), rows_of(room, _RATES, _RATE_ROWS, n),
-            rows_of(room, _CHANGE, _CHANGE_ROWS, n), rows_of(room, _DIRECTIONS, 2, n),
+            rows_of(room, FROM_LAUNCH, FROM_LAUNCH_ROWS, n), rows_of(room, HERE, HERE_ROWS, n),
+            rows_of(room, STOP, STOP_ROWS, n), rows_of(room, AT_PLACE, SECTION_WIDTH, n),
+            rows_of(room, _RATES, _RATE_ROWS, n), rows_of(room, _CHANGE, _CHANGE_ROWS, n),
+            rows_of(room, _DIRECTIONS, 2, n),
         )  # fmt: skip
         placed = placed_state(
             row_of(room, EAST, n), row_of(room, NORTH, n), around, spin, row_of(room, DECEL, n),

@@ -29,8 +29,8 @@ from puck_tables.motion.friction_source import LOOSEST_LOCAL
 from puck_tables.motion.path import TURN_SHARE
 from puck_tables.motion.solve import ErrorEstimate, close_enough
 from puck_tables.stopping.exact import integrated_stops
+from puck_tables.stopping.launch_derivatives import OWN
 from puck_tables.stopping.lookup import LARGEST, SMALLEST
-from puck_tables.stopping.stop_jacobian import OWN
 from puck_tables.table.check import CheckReport
 from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
 from puck_tables.table.law_record import can_be_known, known

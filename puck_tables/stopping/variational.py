@@ -19,7 +19,7 @@ are integrated.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,13 @@ from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.motion.unit_motion import direction
+from puck_tables.stopping.launch_derivatives import (
+    STATES,
+    at_same_time,
+    by_launch,
+    fill_placed_stops,
+    rotated,
+)
 from puck_tables.table.friction_section import FrictionSlopes, friction_slopes_of, slopes_of_table
 from puck_tables.table.singular_lines import lines_of
 from puck_tables.table.slip_spline import refinements, sides_of
@@ -50,6 +57,7 @@ _CHUNK = 16  # motions that a thread takes at once
 _AT_LINE = 3e-6  # nearer to a line that is the limit the derivative is not known to 1e-7
 _POWERS = np.array([1.0, 2.0, 2.0, 2.0, 2.0])  # of Q
 _STOP = [T, X, Y, LENGTH, THETA]
+_OF_STATE = [U, PSI, T, X, Y, THETA]
 _LEAST_SHARE = 1e-30  # of Q
 
 
@@ -93,7 +101,6 @@ def stop_slopes_of(body: UnitPuck, launches: FloatArray, threads: int | None = N
     >>> result[0, 1].round(6).tolist()  # x of a slide: v²/2J
     [1.0, 0.0, 0.0, 0.0, -0.5, 0.0]
     """
-    from puck_tables.stopping.stop_jacobian import fill_placed_stops
     from puck_tables.stopping.stop_section import fill_section_slopes
 
     count, friction = launches.shape[1], variations_of(body)
@@ -178,7 +185,7 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
     >>> (unit_stops(friction, np.array([1.0]), np.array([0.0]))[0, 0].round(6) + 0.0).tolist()
     [1.0, 1.0, 0.0, 0.0]
     """
-    from puck_tables.motion.variation import KEPT, VARIED, fill_stop_variations
+    from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_stop_variations
 
     c, s = np.maximum(cosine, _TINY), np.maximum(sine, _TINY)
     u = np.log(s / c)
@@ -192,14 +199,13 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
         )  # fmt: skip
 
     run_chunks(work, u.size, _CHUNK)
-    stops = rows.reshape(u.size, -1, KEPT)[:, :, _STOP]
-    value, by_u = stops[:, 0], stops[:, 1]
-    out = np.empty((u.size, 5, 4))
-    out[:, :, 0] = value
-    out[:, 1:3, 0] /= c[:, None]
-    out[:, :, 1] = _POWERS * c[:, None] * value - by_u / c[:, None]
-    out[:, :, 2] = _POWERS * s[:, None] * value + by_u / s[:, None]
-    out[:, :, 3] = stops[:, 2]
+    stops = rows.reshape(u.size, BLOCKS, KEPT)[:, :, _STOP]
+    value, by_u, by_height = stops.transpose(1, 0, 2)
+    ratios: Any = c[:, None], s[:, None]
+    by_slip: Any = _POWERS * value
+    by_angle: Any = by_u / (c * s)[:, None]
+    out = np.stack([value, *rotated(by_slip, by_angle, *ratios), by_height], axis=-1)
+    out[:, 1:3, 0] /= ratios[0]
     return out
 
 
@@ -212,7 +218,7 @@ def unit_states(
     ``local``: the error of a step.  Returns array (n, 6, 6): of x, y, body angle, vx, vy, rω:
     themselves; by v, v across, rω, δ, time.
     """
-    from puck_tables.motion.variation import BLOCKS, KEPT, VARIED, fill_state_variations, vary
+    from puck_tables.motion.variation import VARIED, fill_state_variations, vary
 
     c, s = max(cosine, _TINY), max(sine, _TINY)
     u = float(np.log(s / c))
@@ -226,34 +232,45 @@ def unit_states(
         raise AccuracyError("a motion was too long to be differentiated: leave out jacobian=True")
     path, ends = np.empty((count, VARIED)), z[:count]
     vary(ends, u, DORMAND_PRINCE, friction.slopes, path, stop, work)
-    moving = times < stop[T]
-    which, moments = _moments(times[moving], ends, path, stop, friction)
-    rows, rates = np.empty((moments.size, VARIED)), np.empty((moments.size, VARIED))
-    fill_state_variations(
-        moments, which, ends, path, stop, DORMAND_PRINCE, friction.slopes, rows, rates
-    )
-    out = np.zeros((times.size, 6, 6))
-    at_rest = stop.reshape(BLOCKS, KEPT)
-    values, slopes = _physical(at_rest[None], np.zeros(1))
-    out[~moving] = _by_launch(values, slopes, None, times[~moving], c, s)
-    if moving.any():
-        q = (1.0 - moments) ** 4
-        blocks = rows.reshape(-1, BLOCKS, KEPT)
-        values, slopes = _physical(blocks, q)
-        onward = rates[:, :KEPT]
-        log_q = -4.0 / (1.0 - moments)
-        motion = _velocity_slopes(blocks[:, 0], onward[:, U], onward[:, PSI], q, log_q)
-        by_z = np.stack([onward[:, X], onward[:, Y], onward[:, THETA], *motion], axis=-1)
-        by_time = by_z / onward[:, T, None]
-        slopes = slopes - by_time[:, None, :] * blocks[:, 1:, T, None]  # at the same time
-        out[moving] = _by_launch(values, slopes, by_time, times[moving], c, s)
-    return out
+    which, z = _moments(times, ends, path, stop, friction)
+    rows, rates = np.empty((times.size, VARIED)), np.empty((times.size, VARIED))
+    fill_state_variations(z, which, ends, path, stop, DORMAND_PRINCE, friction.slopes, rows, rates)
+    return _own_states(rows, rates, z, times, c, s)
+
+
+def _own_states(
+    rows: FloatArray, by_z: FloatArray, z: FloatArray, times: FloatArray, c: float, s: float
+) -> FloatArray:
+    """States (n, 6, 6) at ``times`` from a motion and its variations (n, 21) at z (n,), 1 at rest.
+
+    ``by_z``: d/dz of the motion.
+    """
+    from puck_tables.motion.variation import BLOCKS, KEPT
+
+    own, by_u, by_height = rows.reshape(-1, BLOCKS, KEPT).transpose(1, 2, 0)
+    (cosine, sine), (east, north) = direction(own[U]), (np.cos(own[PSI]), np.sin(own[PSI]))
+    q, quarter = (1.0 - z) ** 4, 0.25 * (1.0 - z)  # −dz/d ln Q
+    speed, rim = q * cosine, q * sine
+    fall = 1.0 / np.where(z < 1.0, by_z[:, T] * quarter, np.inf)
+    moving: Any = (
+        speed, rim, cosine, sine, east, north, fall, by_z[:, U] * quarter, -by_z[:, PSI] * quarter
+    )  # fmt: skip
+    value: Any = own[X], own[Y], own[THETA], speed * east, speed * north, rim
+    by_angle: Any = by_u[_OF_STATE] / (c * s)
+    tilted: Any = by_height[_OF_STATE]
+    at_times: Any = times
+    own_states = by_launch(
+        c, s, 1.0 / c, at_times, value, at_same_time(by_angle, moving),
+        at_same_time(tilted, moving), at_same_time((0.0, 0.0, -1.0, 0.0, 0.0, 0.0), moving),
+    )  # fmt: skip
+    columns = [np.broadcast_to(one, z.shape) for one in own_states]
+    return np.stack(columns, axis=-1).reshape(-1, STATES, STATES)
 
 
 def _moments(
     times: FloatArray, ends: FloatArray, path: FloatArray, stop: FloatArray, friction: Variations
 ) -> tuple[npt.NDArray[np.int64], FloatArray]:
-    """The last step end before each time, and z there."""
+    """The last step end before each time, and z there, 1 at rest."""
     from puck_tables.motion.path import states_at
     from puck_tables.motion.variation import KEPT
 
@@ -266,52 +283,4 @@ def _moments(
     rest[:KEPT] = stop[:KEPT]
     q, y = np.empty(times.size), np.empty((times.size, SIZE))
     states_at(times, ends, states, rest, DORMAND_PRINCE, friction.ratios, friction.delta, q, y)
-    return which, 1.0 - np.maximum(q, _LEAST_SHARE) ** 0.25
-
-
-def _physical(blocks: FloatArray, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """x, y, body angle, vx, vy, rω (n, 6), and their variations (n, 2, 6), at the same z."""
-    own = blocks[:, 0]
-    (cosine, sine), heading = direction(own[:, U]), own[:, PSI]
-    value = np.stack([
-        own[:, X], own[:, Y], own[:, THETA], q * cosine * np.cos(heading),
-        q * cosine * np.sin(heading), q * sine,
-    ], axis=-1)  # fmt: skip
-    slopes = []
-    for p in range(1, blocks.shape[1]):
-        motion = _velocity_slopes(own, blocks[:, p, U], blocks[:, p, PSI], q, 0.0)
-        places = blocks[:, p, X], blocks[:, p, Y], blocks[:, p, THETA]
-        slopes.append(np.stack([*places, *motion], axis=-1))
-    return value, np.stack(slopes, axis=1)
-
-
-def _velocity_slopes(
-    own: FloatArray, du: FloatArray, turn: FloatArray, q: FloatArray, log_q: FloatArray | float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Changes of vx, vy, rω from those of u, of the heading and of ln Q."""
-    (cosine, sine), heading = direction(own[:, U]), own[:, PSI]
-    ahead = q * cosine * (log_q - sine**2 * du)
-    aside = q * cosine * turn
-    return (
-        ahead * np.cos(heading) - aside * np.sin(heading),
-        ahead * np.sin(heading) + aside * np.cos(heading),
-        q * sine * (log_q + cosine**2 * du),
-    )
-
-
-def _by_launch(
-    value: FloatArray, slopes: FloatArray, by_time: FloatArray | None, times: FloatArray,
-    c: float, s: float,
-) -> FloatArray:  # fmt: skip
-    """Values (n, 6) and their derivatives as :func:`unit_states` has them."""
-    out = np.zeros((times.size, 6, 6))
-    rate = np.zeros((times.size, 6)) if by_time is None else by_time
-    powers = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
-    by_slip = powers * value - times[:, None] * rate
-    out[:, :, 0], out[:, :, 5] = value, rate
-    out[:, :, 1] = c * by_slip - slopes[:, 0] / c
-    out[:, :, 3] = s * by_slip + slopes[:, 0] / s
-    out[:, :, 4] = slopes[:, 1]
-    for row in (0, 3):  # across the launch velocity everything turns
-        out[:, row, 2], out[:, row + 1, 2] = -value[:, row + 1] / c, value[:, row] / c
-    return out
+    return which, np.where(q > 0.0, 1.0 - np.maximum(q, _LEAST_SHARE) ** 0.25, 1.0)

@@ -181,7 +181,7 @@ def next_border(
     last = min(horizon, moves_until(kind, segment), once_round(kind, segment, now))
     if kind == GONE or not last > now or disc[INV_MASS] == 0.0:
         return math.inf
-    first, after = floor_map_span(engine.regions, engine.discs, i)
+    first, after = floor_map_span(engine, i)
     floor_map, radius = engine.regions.floor_map[first:after], disc[RADIUS]
     number = int(engine.obstacles[k, A])
     how = int(disc[LIES + number])

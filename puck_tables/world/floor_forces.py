@@ -26,9 +26,7 @@ def _forces(engine: Engine, states: FloatArray, out: FloatArray) -> None:
     for n in range(states.shape[0]):
         patience(1)
         y = states[n]
-        friction = friction_now(
-            engine.regions, engine.discs, engine.forcing, engine.spans, 0, passed, 0.0, y
-        )
+        friction = friction_now(engine, 0, passed, 0.0, y)
         fx, fy, torque, _ = friction_force(friction, radius, y[VX], y[VY], y[SPIN])
         out[n, 0], out[n, 1], out[n, 2] = fx, fy, torque
 

@@ -47,7 +47,7 @@ from puck_tables.scene.ingredients import (
 )
 from puck_tables.scene.orthotropic import is_elliptic
 from puck_tables.scene.over_time import rows_passed
-from puck_tables.world.engine_state import Engine, Whole
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.layout import (
     BELT_AX,
     BELT_AY,
@@ -86,31 +86,28 @@ def floor_of(surface: Surface, disc: FloatArray) -> Surface:
 
 
 @inlined
-def move_floor(
-    surface: Surface, discs: FloatArray, forcing: FloatArray, spans: Whole, i: int, t: float
-) -> None:  # fmt: skip
+def move_floor(engine: Engine, i: int, t: float) -> None:
     """Let the floor under a disc move as it does at a time."""
-    first, last = spans[i, 0], spans[i, 1]
-    if surface.changes != 0.0 and first < last:
-        passed, disc = rows_passed(forcing, first, last, t), discs[i]
-        now = surface_at(surface, forcing[first:last], passed, t)
+    first, last = engine.spans[i, 0], engine.spans[i, 1]
+    if engine.surface.changes != 0.0 and first < last:
+        passed, disc = rows_passed(engine.forcing, first, last, t), engine.discs[i]
+        now = surface_at(engine.surface, engine.forcing[first:last], passed, t)
         disc[BELT_X], disc[BELT_Y], disc[BELT_SPIN] = now.vx, now.vy, now.spin
         disc[BELT_AX], disc[BELT_AY], disc[BELT_TURN] = now.ax, now.ay, now.turn
 
 
 @inlined
-def over_floor(
-    surface: Surface, disc: FloatArray, state: FloatArray
-) -> tuple[float, float, float]:  # fmt: skip
+def over_floor(engine: Engine, i: int, state: FloatArray) -> tuple[float, float, float]:
     """Velocity and spin of a disc in a state (6,) relative to the floor that it is on."""
-    sx, sy, turning = floor_velocity(floor_of(surface, disc), state[X], state[Y])
+    floor = floor_of(engine.surface, engine.discs[i])
+    sx, sy, turning = floor_velocity(floor, state[X], state[Y])
     return state[VX] - sx, state[VY] - sy, state[SPIN] - turning
 
 
 @inlined
-def slips(surface: Surface, disc: FloatArray, state: FloatArray) -> bool:
+def slips(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether it moves over the floor."""
-    vx, vy, spin = over_floor(surface, disc, state)
+    vx, vy, spin = over_floor(engine, i, state)
     return vx != 0.0 or vy != 0.0 or spin != 0.0
 
 
@@ -121,41 +118,39 @@ def moves_along(surface: Surface) -> bool:
 
 
 @inlined
-def floor_map_span(regions: Regions, discs: FloatArray, i: int) -> tuple[int, int]:
-    """Where in ``regions.ground`` that of a disc begins and ends; empty where friction is one."""
-    size = regions.floor_map.size // discs.shape[0]
+def floor_map_span(engine: Engine, i: int) -> tuple[int, int]:
+    """Where in ``regions.floor_map`` that of a disc begins and ends; empty: friction is one."""
+    size = engine.regions.floor_map.size // engine.discs.shape[0]
     return i * size, (i + 1) * size
 
 
 @inlined
-def law_under(regions: Regions, discs: FloatArray, i: int) -> BySpeed:
+def law_under(engine: Engine, i: int) -> BySpeed:
     """Friction by speed or direction on a disc, as its own load has it; none: nothing."""
-    law = regions.by_speed
+    law, disc = engine.regions.by_speed, engine.discs[i]
     if law.normal == 0.0:
         return law
-    own = law.table[regions.laws[i, 0] : regions.laws[i, 1]]
-    return BySpeed(own, discs[i, HEIGHT_RATIO], discs[i, NORMAL], 1.0)
+    own = law.table[engine.regions.laws[i, 0] : engine.regions.laws[i, 1]]
+    return BySpeed(own, disc[HEIGHT_RATIO], disc[NORMAL], 1.0)
 
 
 @inlined
-def friction_under_disc(regions: Regions, discs: FloatArray, i: int) -> DryFriction:
+def friction_under_disc(engine: Engine, i: int) -> DryFriction:
     """The dry friction on a disc where it is."""
-    region, law = int(discs[i, REGION]), law_under(regions, discs, i)
+    regions, region, law = engine.regions, int(engine.discs[i, REGION]), law_under(engine, i)
     if regions.summed[region]:
-        first, last = floor_map_span(regions, discs, i)
+        first, last = floor_map_span(engine, i)
         law = BySpeed(regions.floor_map[first:last], 0.0, SUMMED, 1.0)
     return DryFriction(regions.load[region], regions.delta[region], regions.limits[region], law)
 
 
 @inlined
 def friction_now(
-    regions: Regions, discs: FloatArray, forcing: FloatArray, spans: Whole, i: int, passed: int,
-    t: float, state: FloatArray,
+    engine: Engine, i: int, passed: int, t: float, state: FloatArray
 ) -> DryFriction:  # fmt: skip
     """The dry friction on a disc in a state (6,) at t, when so many of its rows have passed."""
-    friction = friction_at(
-        friction_under_disc(regions, discs, i), forcing[spans[i, 0] : spans[i, 1]], passed, t
-    )
+    rows = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
+    friction = friction_at(friction_under_disc(engine, i), rows, passed, t)
     put_at(friction, state[X], state[Y], state[THETA])
     return friction
 
@@ -170,9 +165,10 @@ def law_goes_to(regions: Regions) -> float:
 
 
 @inlined
-def outruns_law(regions: Regions, radius: float, ux: float, uy: float, w: float) -> bool:
-    """Whether a rim slips as fast as friction is known, or faster."""
-    return math.hypot(ux, uy) + radius * abs(w) >= SURE * law_goes_to(regions)
+def outruns_law(engine: Engine, i: int, ux: float, uy: float, w: float) -> bool:
+    """Whether the rim of a disc slips as fast as friction is known, or faster."""
+    rim = engine.discs[i, RADIUS] * abs(w)
+    return math.hypot(ux, uy) + rim >= SURE * law_goes_to(engine.regions)
 
 
 @inlined
@@ -211,24 +207,25 @@ def lies_to(away: float, radius: float) -> int:
 
 
 @inlined
-def is_over(regions: Regions, discs: FloatArray, i: int) -> bool:
+def is_over(engine: Engine, i: int) -> bool:
     """Whether a disc is taken for astride."""
-    return regions.summed[int(discs[i, REGION])]
+    return engine.regions.summed[int(engine.discs[i, REGION])]
 
 
 @inlined
-def is_over_belts(regions: Regions, discs: FloatArray, i: int) -> bool:
+def is_over_belts(engine: Engine, i: int) -> bool:
     """Whether a disc may have parts on stretches of the floor with different velocities."""
-    first, last = floor_map_span(regions, discs, i)
-    return is_over(regions, discs, i) and last > first and regions.floor_map[first + BELTS] != 0.0
+    first, last = floor_map_span(engine, i)
+    floor_map = engine.regions.floor_map
+    return is_over(engine, i) and last > first and floor_map[first + BELTS] != 0.0
 
 
 @inlined
-def choose_belt(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> None:
+def choose_belt(engine: Engine, i: int, state: FloatArray) -> None:
     """Of the velocities under a disc let states be relative to the one nearest to its own."""
-    if is_over_belts(regions, discs, i):
-        first, last = floor_map_span(regions, discs, i)
-        floor_map, disc = regions.floor_map[first:last], discs[i]
+    if is_over_belts(engine, i):
+        first, last = floor_map_span(engine, i)
+        floor_map, disc = engine.regions.floor_map[first:last], engine.discs[i]
         bx, by, _ = nearest_belt(
             floor_map, state[X], state[Y], disc[RADIUS], state[VX], state[VY]
         )  # fmt: skip
@@ -237,15 +234,13 @@ def choose_belt(regions: Regions, discs: FloatArray, i: int, state: FloatArray) 
 
 
 @inlined
-def nears_another(
-    regions: Regions, discs: FloatArray, i: int, x: float, y: float, vx: float, vy: float
-) -> bool:
+def nears_another(engine: Engine, i: int, x: float, y: float, vx: float, vy: float) -> bool:
     """Whether a disc that moves at (vx, vy) is nearer to another velocity of the floor."""
-    if not is_over_belts(regions, discs, i):
+    if not is_over_belts(engine, i):
         return False
-    first, last = floor_map_span(regions, discs, i)
-    disc = discs[i]
-    _, _, least = nearest_belt(regions.floor_map[first:last], x, y, disc[RADIUS], vx, vy)
+    first, last = floor_map_span(engine, i)
+    floor_map, disc = engine.regions.floor_map[first:last], engine.discs[i]
+    _, _, least = nearest_belt(floor_map, x, y, disc[RADIUS], vx, vy)
     ox, oy = vx - disc[BELT_X], vy - disc[BELT_Y]
     return least < _NEARER * math.sqrt(ox * ox + oy * oy)
 
@@ -256,24 +251,22 @@ def least_slip(engine: Engine, i: int, state: FloatArray, t: float) -> float:
     rows = engine.forcing[engine.spans[i, 0] : engine.spans[i, 1]]
     surface = surface_at(engine.surface, rows, rows_passed(rows, 0, len(rows), t), t)
     sx, sy, turning = floor_velocity(surface, state[X], state[Y])
-    regions, discs = engine.regions, engine.discs
-    radius = discs[i, RADIUS]
+    first, last = floor_map_span(engine, i)
+    radius, floor_map = engine.discs[i, RADIUS], engine.regions.floor_map[first:last]
     speed, rim = math.hypot(state[VX] - sx, state[VY] - sy), radius * (state[SPIN] - turning)
-    first, last = floor_map_span(regions, discs, i)
-    if last > first and regions.floor_map[first + BELTS] != 0.0:
-        _, _, speed = nearest_belt(
-            regions.floor_map[first:last], state[X], state[Y], radius, state[VX], state[VY]
-        )  # fmt: skip
+    if floor_map.size > 0 and floor_map[BELTS] != 0.0:
+        _, _, speed = nearest_belt(floor_map, state[X], state[Y], radius, state[VX], state[VY])
     return math.sqrt(speed * speed + rim * rim)
 
 
 @inlined
-def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray) -> float:
+def room_on_floor(engine: Engine, i: int, state: FloatArray) -> float:
     """How far a disc in a state (6,) is from lying otherwise than it is taken to; < 0: it does."""
-    first, last = floor_map_span(regions, discs, i)
-    floor_map, radius, room = regions.floor_map[first:last], discs[i, RADIUS], math.inf
-    for number in range(discs.shape[1] - LIES):
-        away, how = off_border(floor_map, number, state[X], state[Y]), int(discs[i, LIES + number])
+    first, last = floor_map_span(engine, i)
+    floor_map, disc = engine.regions.floor_map[first:last], engine.discs[i]
+    radius, room = disc[RADIUS], math.inf
+    for number in range(disc.size - LIES):
+        away, how = off_border(floor_map, number, state[X], state[Y]), int(disc[LIES + number])
         if how == OVERLAPS:
             room = min(room, radius - abs(away))
         else:
@@ -284,9 +277,8 @@ def room_on_floor(regions: Regions, discs: FloatArray, i: int, state: FloatArray
 @inlined
 def step_onto(engine: Engine, i: int) -> None:
     """A disc has the friction that belongs to how it lies to borders, patches and edges."""
-    disc = engine.discs[i]
-    first, last = floor_map_span(engine.regions, engine.discs, i)
-    floor_map = engine.regions.floor_map[first:last]
+    first, last = floor_map_span(engine, i)
+    disc, floor_map = engine.discs[i], engine.regions.floor_map[first:last]
     strip, patch, is_mixed = 0, -1, False
     if floor_map.size > 0:
         borders, patches = int(floor_map[BORDERS]), int(floor_map[PATCHES])
@@ -308,7 +300,7 @@ def step_onto(engine: Engine, i: int) -> None:
     disc[REGION] = region
     disc[DECEL], disc[DELTA] = engine.floors[region, 0], engine.floors[region, 1]
     disc[INTEGRATED] = engine.floors[region, 2]
-    if engine.surface.changes == 0.0 and not is_over_belts(engine.regions, engine.discs, i):
+    if engine.surface.changes == 0.0 and not is_over_belts(engine, i):
         disc[BELT_X], disc[BELT_Y] = engine.floors[region, 3], engine.floors[region, 4]
 
 
@@ -321,9 +313,8 @@ def is_beyond(disc: FloatArray, edge: FloatArray, x: float, y: float) -> bool:
 @inlined
 def lie_at(engine: Engine, i: int, x: float, y: float) -> None:
     """See how a disc at a place lies to borders, patches and edges: it has the friction there."""
-    disc = engine.discs[i]
-    first, last = floor_map_span(engine.regions, engine.discs, i)
-    floor_map = engine.regions.floor_map[first:last]
+    first, last = floor_map_span(engine, i)
+    disc, floor_map = engine.discs[i], engine.regions.floor_map[first:last]
     if disc[INV_MASS] > 0.0:  # else it is driven, and may have no map
         for number in range(engine.discs.shape[1] - LIES):
             away = off_border(floor_map, number, x, y)
@@ -340,5 +331,5 @@ def lay_down(engine: Engine, i: int, state: FloatArray) -> None:
     """A disc is put down."""
     lie_at(engine, i, state[X], state[Y])
     engine.discs[i, BELT_SPIN] = engine.surface.spin
-    move_floor(engine.surface, engine.discs, engine.forcing, engine.spans, i, engine.clock[0])
-    choose_belt(engine.regions, engine.discs, i, state)
+    move_floor(engine, i, engine.clock[0])
+    choose_belt(engine, i, state)

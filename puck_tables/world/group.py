@@ -27,7 +27,8 @@ from puck_tables.kernels.compile import inlined, kernel, patience
 from puck_tables.motion.impact_law import along_normal
 from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import SPIN, VX, VY, X, Y
-from puck_tables.scene.ingredients import FREE, Regions, Surface
+from puck_tables.scene.ingredients import FREE
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.holds import forbid
 from puck_tables.world.layout import HOLD, RADIUS, along_of_pair, curvature, normal_to, to_end
 from puck_tables.world.step_ledger import LEDGER
@@ -59,27 +60,6 @@ STILL = 1e-12  # of the scale of speeds: as good as at rest
 SMOOTH_SLIP = 1e-13  # of the scale of speeds: a rim that slips no more
 LEVEL = 1e-12  # of the scale of accelerations: none
 GAINS = 1e-10  # of the scale of accelerations: what gains less stays at rest
-
-
-class Group(NamedTuple):
-    """What all groups share.
-
-    ``discs`` (n, 25), ``obstacles`` (k, 10): :mod:`puck_tables.world.layout`; ``regions``: the dry
-    friction of every disc under its REGION; ``surface``: how the floor moves; ``rims``: their laws;
-    ``films`` (f, 20) and ``drives`` (n, 2): rows of prescribed motions, and of each disc the first
-    and last + 1; ``forcing`` (g, 4) and ``spans`` (n, 2): rows t, Fx, Fy, torque of forces
-    over time (s, N, N m), and the same.
-    """
-
-    discs: FloatArray
-    obstacles: FloatArray
-    regions: Regions
-    surface: Surface
-    rims: FloatArray
-    films: FloatArray
-    drives: IntArray
-    forcing: FloatArray
-    spans: IntArray
 
 
 class Scales(NamedTuple):
@@ -200,15 +180,15 @@ def find_places(members: IntArray, contacts: IntArray, buffer: GroupBuffer) -> N
 
 @inlined
 def look_at_ties(
-    group: Group, members: IntArray, t: float, y: FloatArray, buffer: GroupBuffer
+    engine: Engine, members: IntArray, t: float, y: FloatArray, buffer: GroupBuffer
 ) -> None:
     """What rails, pivots and blades forbid the members at the states y (m, 6)."""
     count = 0
     for place in range(members.shape[0]):
-        disc = group.discs[members[place]]
+        disc = engine.discs[members[place]]
         if disc[HOLD] != FREE:
             more = forbid(
-                disc, group.surface, t, y[place], buffer.ties[count:], buffer.strays[count:]
+                disc, engine.surface, t, y[place], buffer.ties[count:], buffer.strays[count:]
             )
             for _ in range(more):
                 buffer.led_places[count] = place
@@ -217,16 +197,18 @@ def look_at_ties(
 
 
 @kernel
-def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: FloatArray) -> None:
+def look(
+    engine: Engine, members: IntArray, pairs: IntArray, y: FloatArray, out: FloatArray
+) -> None:
     """What is seen of contacts ``pairs`` (c, 2) at the states y (m, 6), into ``out`` (≥ c, 11)."""
     for c in range(pairs.shape[0]):
         patience(1)
         one, other, contact = pairs[c, 0], pairs[c, 1], out[c]
         i = members[one]
-        radius = group.discs[i, RADIUS]
+        radius = engine.discs[i, RADIUS]
         if other >= 0:
             j = members[other]
-            far = group.discs[j, RADIUS]
+            far = engine.discs[j, RADIUS]
             dx, dy = y[other, X] - y[one, X], y[other, Y] - y[one, Y]
             distance = math.hypot(dx, dy)
             contact[NX], contact[NY], contact[CURVATURE] = (
@@ -238,7 +220,7 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
             vx, vy = y[one, VX] - y[other, VX], y[one, VY] - y[other, VY]
             turning = radius * y[one, SPIN] + far * y[other, SPIN]
         else:
-            j, obstacle, at_x, at_y = other, group.obstacles[-1 - other], y[one, X], y[one, Y]
+            j, obstacle, at_x, at_y = other, engine.obstacles[-1 - other], y[one, X], y[one, Y]
             contact[GAP], contact[NX], contact[NY], _ = normal_to(obstacle, radius, at_x, at_y, 0.0)
             contact[CURVATURE] = curvature(obstacle, radius, contact[GAP])
             contact[FAR_ARM], contact[TO_END] = 0.0, to_end(obstacle, radius, at_x, at_y)
@@ -246,5 +228,5 @@ def look(group: Group, members: IntArray, pairs: IntArray, y: FloatArray, out: F
         contact[ARM] = radius
         contact[APPROACH], contact[ALONG] = along_normal(vx, vy, 0.0, contact[NX], contact[NY])
         contact[SLIP] = contact[ALONG] + turning
-        tangential, friction = along_of_pair(group.rims, group.discs, group.obstacles, i, j)
+        tangential, friction = along_of_pair(engine.rims, engine.discs, engine.obstacles, i, j)
         contact[GRIP] = friction if tangential > -1.0 else 0.0  # −1: smooth

@@ -15,13 +15,12 @@ from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, at_slip_zero, 
 from puck_tables.scene.ingredients import (
     FREE,
     Body,
-    DryFriction,
     floor_acceleration,
     floor_velocity,
 )
 from puck_tables.scene.over_time import FORCED, prescribed_by, rows_passed
 from puck_tables.scene.rest import constrained_yield, free_yield
-from puck_tables.world.engine_state import Engine, Whole
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import (
     floor_of,
     friction_now,
@@ -37,7 +36,6 @@ from puck_tables.world.group import (
     NY,
     SLIP,
     YIELDS,
-    Group,
     GroupBuffer,
     IntArray,
 )
@@ -71,17 +69,15 @@ _BEGUN = 1e-12  # m/s: a slip that has a direction, and no size
 
 
 @inlined
-def pull_on(
-    discs: FloatArray, forcing: FloatArray, spans: Whole, i: int, passed: int, t: float
-) -> tuple[float, float, float]:
+def pull_on(engine: Engine, i: int, passed: int, t: float) -> tuple[float, float, float]:
     """The accelerations by a slope and given forces, of whose rows so many have passed."""
-    ax, ay, turn = discs[i, PULL_X], discs[i, PULL_Y], discs[i, TWIST]
-    first, last = spans[i, 0], spans[i, 1]
+    disc, first, last = engine.discs[i], engine.spans[i, 0], engine.spans[i, 1]
+    ax, ay, turn = disc[PULL_X], disc[PULL_Y], disc[TWIST]
     if first < last:
-        fx, fy, torque = prescribed_by(forcing[first:last], passed, t)
-        ax += discs[i, INV_MASS] * fx
-        ay += discs[i, INV_MASS] * fy
-        turn += discs[i, INV_INERTIA] * torque
+        fx, fy, torque = prescribed_by(engine.forcing[first:last], passed, t)
+        ax += disc[INV_MASS] * fx
+        ay += disc[INV_MASS] * fy
+        turn += disc[INV_INERTIA] * torque
     return ax, ay, turn
 
 
@@ -92,16 +88,14 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
     if disc[INV_MASS] == 0.0:
         return 0.0, 0.0  # straight on
     passed = rows_passed(engine.forcing, engine.spans[i, 0], engine.spans[i, 1], t)
-    ax, ay, turn = pull_on(engine.discs, engine.forcing, engine.spans, i, passed, t)
-    ux, uy, w = over_floor(engine.surface, disc, state)
+    ax, ay, turn = pull_on(engine, i, passed, t)
+    ux, uy, w = over_floor(engine, i, state)
     if size(ux, uy, w) == 0.0:
         floor = floor_of(engine.surface, disc)
         cx, cy = floor_acceleration(floor, state[X], state[Y], state[VX], state[VY])
         push, holds = math.hypot(ax - cx, ay - cy), disc[DECEL]
         if push > 0.0 and engine.forcing.shape[1] > FORCED:
-            friction = friction_now(
-                engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t, state
-            )  # fmt: skip
+            friction = friction_now(engine, i, passed, t, state)
             fx, fy, _, _ = friction_force(
                 at_slip_zero(friction, 1.0), disc[RADIUS], (ax - cx) / push, (ay - cy) / push, 0.0
             )  # fmt: skip
@@ -109,9 +103,7 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
         left = 1.0 - holds / push if push > engine.surface.static * holds else 0.0
         ax, ay = cx + left * (ax - cx), cy + left * (ay - cy)
     else:
-        friction = friction_now(
-            engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t, state
-        )
+        friction = friction_now(engine, i, passed, t, state)
         fx, fy, torque, _ = friction_force(friction, disc[RADIUS], ux, uy, w)
         dx, dy, slows, _, _ = dragged(disc[DRAG:], ux, uy, w)
         ax += disc[INV_MASS] * fx + dx
@@ -122,88 +114,65 @@ def acceleration(engine: Engine, i: int, t: float, state: FloatArray) -> tuple[f
 
 
 @inlined
-def slip_of(group: Group, number: int, y: FloatArray) -> float:
+def slip_of(engine: Engine, number: int, y: FloatArray) -> float:
     """Q of a disc in the state y (6,) over the floor."""
-    vx, vy, spin = over_floor(group.surface, group.discs[number], y)
-    return size(vx, vy, group.discs[number, RADIUS] * spin)
+    vx, vy, spin = over_floor(engine, number, y)
+    return size(vx, vy, engine.discs[number, RADIUS] * spin)
 
 
 @inlined
-def load_on(group: Group, number: int) -> float:
+def load_on(engine: Engine, number: int) -> float:
     """F N of the floor on which a disc is."""
-    return group.regions.load[int(group.discs[number, REGION])]
+    return engine.regions.load[int(engine.discs[number, REGION])]
 
 
 @inlined
-def rest_on_floor(group: Group, number: int, y: FloatArray) -> None:
+def rest_on_floor(engine: Engine, number: int, y: FloatArray) -> None:
     """Give a disc in a state (6,) the velocity of the floor that it is on."""
-    floor = floor_of(group.surface, group.discs[number])
+    floor = floor_of(engine.surface, engine.discs[number])
     y[VX], y[VY], y[SPIN] = floor_velocity(floor, y[X], y[Y])
 
 
 @inlined
-def _move_floor(group: Group, number: int, t: float) -> None:
-    """Let the floor under a disc move as it does at a time."""
-    move_floor(group.surface, group.discs, group.forcing, group.spans, number, t)
-
-
-@inlined
-def slip_at(group: Group, number: int, y: FloatArray, t: float) -> float:
+def slip_at(engine: Engine, number: int, y: FloatArray, t: float) -> float:
     """Q of a disc in the state y (6,) over the floor at a time."""
-    _move_floor(group, number, t)
-    return slip_of(group, number, y)
+    move_floor(engine, number, t)
+    return slip_of(engine, number, y)
 
 
 @inlined
-def count_rows(group: Group, members: IntArray, t: float, buffer: GroupBuffer) -> None:
+def count_rows(engine: Engine, members: IntArray, t: float, buffer: GroupBuffer) -> None:
     """How many rows over time of the members have passed, and how their floors move."""
     for place in range(members.shape[0]):
         number = members[place]
-        first, last = group.spans[number, 0], group.spans[number, 1]
-        buffer.passed[place] = rows_passed(group.forcing, first, last, t)
-        _move_floor(group, number, t)
+        first, last = engine.spans[number, 0], engine.spans[number, 1]
+        buffer.passed[place] = rows_passed(engine.forcing, first, last, t)
+        move_floor(engine, number, t)
 
 
 @inlined
 def place_driven(
-    group: Group, members: IntArray, motions: IntArray, t: float, y: FloatArray, buffer: GroupBuffer
+    engine: Engine,
+    members: IntArray,
+    motions: IntArray,
+    t: float,
+    y: FloatArray,
+    buffer: GroupBuffer,
 ) -> None:
     """Put the driven members where their films have them at t, and their accelerations."""
     buffer.clock[0] = t
     for place in range(members.shape[0]):
-        _move_floor(group, members[place], t)
+        move_floor(engine, members[place], t)
         if motions[place] == DRIVEN:
-            first, last = group.drives[members[place], 0], group.drives[members[place], 1]
-            on_piece(group.films[piece_at(group.films, first, last, t)], t, buffer.film)
+            first, last = engine.drives[members[place], 0], engine.drives[members[place], 1]
+            on_piece(engine.pieces[piece_at(engine.pieces, first, last, t)], t, buffer.film)
             write_over(y[place], buffer.film[:6])
             write_over(buffer.own[place], buffer.film[6:])
 
 
-@inlined
-def _pull_on(
-    group: Group, members: IntArray, place: int, buffer: GroupBuffer
-) -> tuple[float, float, float]:
-    """Accelerations of a member by slope and given forces, now."""
-    return pull_on(
-        group.discs, group.forcing, group.spans, members[place], buffer.passed[place],
-        buffer.clock[0],
-    )  # fmt: skip
-
-
-@inlined
-def _friction_under(
-    group: Group, members: IntArray, place: int, y: FloatArray, buffer: GroupBuffer
-) -> DryFriction:
-    """The dry friction on a member, now."""
-    return friction_now(
-        group.regions, group.discs, group.forcing, group.spans, members[place],
-        buffer.passed[place], buffer.clock[0], y[place],
-    )  # fmt: skip
-
-
 @inner
 def act(
-    group: Group, members: IntArray, motions: IntArray, y: FloatArray, power: FloatArray,
+    engine: Engine, members: IntArray, motions: IntArray, y: FloatArray, power: FloatArray,
     buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Accelerations of the members as if there were no contacts, and the power of what acts.
@@ -214,24 +183,25 @@ def act(
         power[i] = 0.0
     for place in range(members.shape[0]):
         number = members[place]
-        disc, own, inverse = group.discs[number], buffer.own[place], buffer.inverse[place]
+        disc, own, inverse = engine.discs[number], buffer.own[place], buffer.inverse[place]
         doing, radius = motions[place], disc[RADIUS]
         inverse[0] = inverse[1] = 0.0
         vx, vy, spin = y[place, VX], y[place, VY], y[place, SPIN]
-        floor = floor_of(group.surface, disc)
+        floor = floor_of(engine.surface, disc)
         cx, cy = floor_acceleration(floor, y[place, X], y[place, Y], vx, vy)
         held = buffer.floor_accels[place]
         held[0], held[1], held[2] = cx, cy, floor.turn
         if doing == DRIVEN:
             continue
-        px, py, pull = _pull_on(group, members, place, buffer)
+        passed, now = buffer.passed[place], buffer.clock[0]
+        px, py, pull = pull_on(engine, number, passed, now)
         light, turns = disc[INV_MASS], disc[INV_INERTIA]
         power[PULL_WORK] += (px * vx + py * vy) / light + pull * spin / turns
-        rubbed = is_over_belts(group.regions, group.discs, number)
+        rubbed = is_over_belts(engine, number)
         if doing == HELD:
             own[0], own[1], own[2] = cx, cy, floor.turn
             if rubbed:
-                friction = _friction_under(group, members, place, y, buffer)
+                friction = friction_now(engine, number, passed, now, y[place])
                 heat = heat_at_rest(friction.by_speed.table, -px / light, -py / light)
                 power[FLOOR_HEAT] += heat
                 power[SUPPORT_WORK] += heat
@@ -239,7 +209,7 @@ def act(
         inverse[0], inverse[1] = light, turns
         sx, sy, turning = floor_velocity(floor, y[place, X], y[place, Y])
         ux, uy, w = vx - sx, vy - sy, spin - turning
-        friction = _friction_under(group, members, place, y, buffer)
+        friction = friction_now(engine, number, passed, now, y[place])
         if doing == YIELDS:
             slip, small = buffer.slips[place], _BEGUN if rubbed else 1.0  # other belts slip by more
             nx, ny, nw = small * slip[0], small * slip[1], small * slip[2]
@@ -278,7 +248,7 @@ def force_of_contacts(buffer: GroupBuffer, count: int, place: int) -> tuple[floa
 
 @inlined
 def power_of_contacts(
-    group: Group, members: IntArray, motions: IntArray, count: int, y: FloatArray,
+    engine: Engine, members: IntArray, motions: IntArray, count: int, y: FloatArray,
     power: FloatArray, buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Heat of the rims, and work of what drives, leads and carries, into ``power``."""
@@ -292,7 +262,7 @@ def power_of_contacts(
             power[BACK_X] += fx
             power[BACK_Y] += fy
         elif motions[place] == HELD and size(vx, vy, spin) > 0.0:
-            fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
+            fx, fy, torque = _wanted_of_floor(engine, members, place, count, buffer)
             power[SUPPORT_WORK] -= fx * vx + fy * vy + torque * spin
     for tie in range(buffer.number[0]):
         place, row = buffer.led_places[tie], buffer.ties[tie]
@@ -303,12 +273,12 @@ def power_of_contacts(
 
 @inlined
 def _wanted_of_floor(
-    group: Group, members: IntArray, place: int, count: int, buffer: GroupBuffer
+    engine: Engine, members: IntArray, place: int, count: int, buffer: GroupBuffer
 ) -> tuple[float, float, float]:
     """Force and torque that a member at rest exerts on the floor."""
-    disc = group.discs[members[place]]
+    disc = engine.discs[members[place]]
     fx, fy, torque = force_of_contacts(buffer, count, place)
-    px, py, pull = _pull_on(group, members, place, buffer)
+    px, py, pull = pull_on(engine, members[place], buffer.passed[place], buffer.clock[0])
     light, turns = disc[INV_MASS], disc[INV_INERTIA]
     floor = buffer.floor_accels[place]
     fx, fy = fx + (px - floor[0]) / light, fy + (py - floor[1]) / light
@@ -317,14 +287,14 @@ def _wanted_of_floor(
 
 @inlined
 def excess_on(
-    group: Group, members: IntArray, place: int, count: int, y: FloatArray, buffer: GroupBuffer
+    engine: Engine, members: IntArray, place: int, count: int, y: FloatArray, buffer: GroupBuffer
 ) -> tuple[float, float, float, float]:
     """By how much what acts on a disc at rest exceeds its friction, over f N, and the slip then."""
-    disc = group.discs[members[place]]
-    friction = _friction_under(group, members, place, y, buffer)
-    friction = at_slip_zero(friction, group.surface.static)
-    load = load_on(group, members[place])
-    fx, fy, torque = _wanted_of_floor(group, members, place, count, buffer)
+    number = members[place]
+    disc, load = engine.discs[number], load_on(engine, number)
+    friction = friction_now(engine, number, buffer.passed[place], buffer.clock[0], y[place])
+    friction = at_slip_zero(friction, engine.surface.static)
+    fx, fy, torque = _wanted_of_floor(engine, members, place, count, buffer)
     kind = int(disc[HOLD])
     if kind == FREE:
         excess, ux, uy, w = free_yield(friction, disc[RADIUS], fx, fy, torque, False)
@@ -338,15 +308,15 @@ def excess_on(
 
 
 @inlined
-def gain_of(group: Group, number: int, place: int, buffer: GroupBuffer) -> float:
+def gain_of(engine: Engine, number: int, place: int, buffer: GroupBuffer) -> float:
     """How fast a disc that yields gains speed along its way."""
-    slip, rate, radius = buffer.slips[place], buffer.rates[place], group.discs[number, RADIUS]
+    slip, rate, radius = buffer.slips[place], buffer.rates[place], engine.discs[number, RADIUS]
     ax, ay = rate[0] - buffer.floor_accels[place, 0], rate[1] - buffer.floor_accels[place, 1]
     turn = rate[2] - buffer.floor_accels[place, 2]
     return slip[0] * ax + slip[1] * ay + radius * radius * slip[2] * turn
 
 
 @inlined
-def can_rest(group: Group, number: int) -> bool:
+def can_rest(engine: Engine, number: int) -> bool:
     """Whether the floor can hold a disc."""
-    return load_on(group, number) > 0.0
+    return load_on(engine, number) > 0.0

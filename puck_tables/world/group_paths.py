@@ -13,7 +13,7 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.world.engine_state import Engine, Whole
-from puck_tables.world.floor_under import moves_along
+from puck_tables.world.floor_under import is_over, moves_along
 from puck_tables.world.group import (
     APART,
     HELD,
@@ -25,12 +25,11 @@ from puck_tables.world.group import (
     RUNS_OFF,
     STICKS,
     UNSOLVED,
-    Group,
     GroupBuffer,
     Scales,
     buffer_for,
 )
-from puck_tables.world.layout import HOLD_VX, HOLD_VY, PULL_X, PULL_Y, REGION, TWIST, write_over
+from puck_tables.world.layout import HOLD_VX, HOLD_VY, PULL_X, PULL_Y, TWIST, write_over
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.paths import DURATION, FOR_EVER, PIECE_COLUMNS, START
 from puck_tables.world.pressing import press
@@ -44,13 +43,14 @@ _TRIES = 100  # contacts given up at one moment, at most: more is no motion
 class Workplace(NamedTuple):
     """Where one group after the other is set up.
 
-    ``group``: what all share; ``contacts`` (c, 3): disc, partner and row in the room; ``modes``
+    ``engine``: as all have it, but that its ``pieces`` and ``drives`` are the ways of the driven
+    now; ``contacts`` (c, 3): disc, partner and row in the room; ``modes``
     (c,), ``members`` and ``motions`` (n,): of all these the first are those of the group; ``moved``
     (n, 6): states at the end; ``pieces`` (n, LONGEST, 20) and ``work_rows`` (LONGEST,
     37): the paths; ``jump`` (8,): the ledger of what happened at once; ``buffer``: to work on.
     """
 
-    group: Group
+    engine: Engine
     contacts: Whole
     modes: Whole
     members: Whole
@@ -65,12 +65,9 @@ class Workplace(NamedTuple):
 def workplace_for(engine: Engine, contacts: int) -> Workplace:
     """The place to set up groups that push, with so many contacts."""
     n = len(engine.discs)
-    group = Group(
-        engine.discs, engine.obstacles, engine.regions, engine.surface, engine.rims,
-        np.zeros((n, PIECE_COLUMNS)), np.zeros((n, 2), np.int64), engine.forcing, engine.spans,
-    )  # fmt: skip
+    own = engine._replace(pieces=np.zeros((n, PIECE_COLUMNS)), drives=np.zeros((n, 2), np.int64))
     return Workplace(
-        group, np.zeros((contacts, 3), np.int64), np.zeros(contacts, np.int64),
+        own, np.zeros((contacts, 3), np.int64), np.zeros(contacts, np.int64),
         np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros((n, 6)),
         np.zeros((n, LONGEST, PIECE_COLUMNS)), np.zeros((LONGEST, WORK_COLUMNS)), np.zeros(LEDGER),
         buffer_for(n, contacts, n),
@@ -95,16 +92,16 @@ def _horizon(engine: Engine, t: float, size: int, place: Workplace) -> tuple[flo
     """Up to when a group is followed, and whether it may set off from rest by itself."""
     surface, horizon, jump = engine.surface, math.inf, math.inf
     pulled = over = False
-    moves = surface.vx != 0.0 or surface.vy != 0.0 or surface.spin != 0.0
+    moves = moves_along(surface)
     for k in range(size):
         i = place.members[k]
         disc = engine.discs[i]
         pulled = pulled or disc[PULL_X] != 0.0 or disc[PULL_Y] != 0.0 or disc[TWIST] != 0.0
         moves = moves or disc[HOLD_VX] != 0.0 or disc[HOLD_VY] != 0.0
         jump = min(jump, _next_jump(engine, i, t))
-        over = over or engine.regions.summed[int(disc[REGION])]
+        over = over or is_over(engine, i)
         if engine.drives[i, 0] < engine.drives[i, 1]:  # what drives may turn where its piece ends
-            row = place.group.films[i]
+            row = place.engine.pieces[i]
             moves = moves or row[DURATION] >= FOR_EVER  # by hand, until it turns
             horizon = min(horizon, row[START] + row[DURATION])
     jumps = jump < math.inf
@@ -144,7 +141,7 @@ def paths_of(
         modes[c] = STICKS
     for _ in range(_TRIES):
         how = press(
-            place.group, members, place.contacts[:contacts], states, t, scales,
+            place.engine, members, place.contacts[:contacts], states, t, scales,
             modes[:contacts], motions, place.jump, buffer,
         )  # fmt: skip
         if how == UNSOLVED:
@@ -158,7 +155,7 @@ def paths_of(
         for i in members:
             write_over(place.moved[i], states[i])
         how, which, t_end, count = follow(
-            place.group, members, place.contacts[:contacts], place.moved, t, horizon, scales,
+            place.engine, members, place.contacts[:contacts], place.moved, t, horizon, scales,
             modes[:contacts], motions, place.pieces, place.work_rows, buffer,
         )  # fmt: skip
         if t_end > t and count > 0:

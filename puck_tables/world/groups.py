@@ -131,8 +131,8 @@ def _look_at_driven(engine: Engine, t: float, place: Workplace) -> None:
     for i in range(engine.discs.shape[0]):
         if engine.drives[i, 0] >= engine.drives[i, 1]:
             continue
-        place.group.drives[i, 0], place.group.drives[i, 1] = i, i + 1
-        row, segment = place.group.films[i], engine.segments[i]
+        place.engine.drives[i, 0], place.engine.drives[i, 1] = i, i + 1
+        row, segment = place.engine.pieces[i], engine.segments[i]
         if engine.kinds[i] == PATH:
             write_over(row, engine.pieces[int(segment[FIRST_PIECE])])
         else:

@@ -253,7 +253,7 @@ def _fill_brakes(engine: Engine, y: FloatArray, out: FloatArray) -> None:
         i = row % count
         if engine.discs[i, TWIST] == 0.0 or regions.summed[row] or regions.load[row] == 0.0:
             continue
-        law = law_under(regions, engine.discs, i)
+        law = law_under(engine, i)
         friction = DryFriction(regions.load[row], regions.delta[row], regions.limits[row], law)
         phase = Phase(model_of(engine, i), friction, 0, SLIDES, NO_DIRECTION, 0.0)
         excess = abs(excess_at_rest(phase, 0.0, y)[0])

@@ -122,9 +122,9 @@ def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
     """
     y, disc, radius = buffer.new, engine.discs[i], engine.discs[i, RADIUS]
     vx, vy = y[VX] + disc[BELT_X], y[VY] + disc[BELT_Y]
-    if nears_another(engine.regions, engine.discs, i, y[X], y[X + 1], vx, vy):
+    if nears_another(engine, i, y[X], y[X + 1], vx, vy):
         return True
-    if outruns_law(engine.regions, radius, y[VX], y[VY], y[SPIN]):
+    if outruns_law(engine, i, y[VX], y[VY], y[SPIN]):
         return True
     for k in range(engine.obstacles.shape[0]):
         row = engine.obstacles[k]
@@ -132,8 +132,8 @@ def _leads_off(engine: Engine, i: int, buffer: LoneBuffer) -> bool:
             return True
     if engine.discs.shape[1] == LIES:
         return False
-    before = room_on_floor(engine.regions, engine.discs, i, buffer.y) + _OVER * radius
-    return before > 0.0 > room_on_floor(engine.regions, engine.discs, i, y) + _OVER * radius
+    before = room_on_floor(engine, i, buffer.y) + _OVER * radius
+    return before > 0.0 > room_on_floor(engine, i, y) + _OVER * radius
 
 
 @inlined
@@ -288,9 +288,9 @@ def follow_alone(
     they did to the energies after all works, uncounted.  Where it rests for good there are none,
     until inf; ``state`` (6,) is moved to rest.  Where it cannot be it tips by then, or at inf not.
     """
-    choose_belt(engine.regions, engine.discs, i, state)
+    choose_belt(engine, i, state)
     model, buffer = model_of(engine, i), buffer_on(work)
-    friction = friction_under_disc(engine.regions, engine.discs, i)
+    friction = friction_under_disc(engine, i)
     y, new, stages = buffer.y, buffer.new, buffer.stages
     speed, unit, radius = engine.scale[0], engine.scale[0] / engine.scale[1], model.body.radius
     tol, drive, load = max(engine.scale[2], FINEST), model.forces.drive, friction.load

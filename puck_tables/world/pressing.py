@@ -17,6 +17,7 @@ from puck_tables.scene.friction import SPIN, VX, size
 from puck_tables.scene.rest import SLACK
 from puck_tables.world.complementarity import find_modes, rim_mode
 from puck_tables.world.contact_search import HARDLY
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import choose_belt, over_floor
 from puck_tables.world.group import (
     APART,
@@ -34,7 +35,6 @@ from puck_tables.world.group import (
     TIME_UP,
     UNSOLVED,
     YIELDS,
-    Group,
     GroupBuffer,
     IntArray,
     Scales,
@@ -54,7 +54,7 @@ from puck_tables.world.group_forces import (
     rest_on_floor,
     slip_of,
 )
-from puck_tables.world.layout import INV_INERTIA, INV_MASS, RADIUS, write_over
+from puck_tables.world.layout import INV_INERTIA, INV_MASS, RADIUS, kinetic, write_over
 from puck_tables.world.multipliers import leads, push_and_move, stop_slips
 from puck_tables.world.step_ledger import DRIVE_WORK, RIM_HEAT
 
@@ -66,14 +66,14 @@ _SAME = 0.9  # the cosine between directions that are the same
 
 @inlined
 def _turn(
-    group: Group, number: int, place: int, radius: float, buffer: GroupBuffer
+    engine: Engine, number: int, place: int, radius: float, buffer: GroupBuffer
 ) -> tuple[float, float]:
     """Turn one towards its acceleration; how much of that is across, and along.
 
     At a pace of J over Q where only friction turns with it; where others lead it, faster.
     """
     slip, scale = buffer.slips[place], buffer.turn_rates[place]
-    gain = gain_of(group, number, place, buffer)
+    gain = gain_of(engine, number, place, buffer)
     ox = buffer.rates[place, 0] - buffer.floor_accels[place, 0] - gain * slip[0]
     oy = buffer.rates[place, 1] - buffer.floor_accels[place, 1] - gain * slip[1]
     ow = radius * (buffer.rates[place, 2] - buffer.floor_accels[place, 2] - gain * slip[2])
@@ -81,9 +81,9 @@ def _turn(
     if off > 0.97 * scale[1]:
         scale[0] = max(_LONGEST, 0.5 * scale[0]) if off > 1.001 * scale[1] else 1.3 * scale[0]
     scale[1] = off
-    disc = group.discs[number]
+    disc = engine.discs[number]
     turns = max(disc[INV_MASS], 0.5 * radius * radius * disc[INV_INERTIA])
-    share = scale[0] / (load_on(group, number) * turns)
+    share = scale[0] / (load_on(engine, number) * turns)
     if share * size(off, gain, 0.0) > 1.0:
         share = 1.0 / size(off, gain, 0.0)
     wx, wy, ww = slip[0] + share * ox, slip[1] + share * oy, radius * slip[2] + share * ow
@@ -94,7 +94,7 @@ def _turn(
 
 @inner
 def turn_directions(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
     scales: Scales, find: bool, power: FloatArray, buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Turn slips that begin to where they are driven, all at once; pushes and accelerations.
@@ -107,13 +107,13 @@ def turn_directions(
         steady = True
         for place in range(members.shape[0]):
             if motions[place] == YIELDS:
-                radius = group.discs[members[place], RADIUS]
-                off, gain = _turn(group, members[place], place, radius, buffer)
+                radius = engine.discs[members[place], RADIUS]
+                off, gain = _turn(engine, members[place], place, radius, buffer)
                 level = max(_CONVERGED * abs(gain), _ROUNDING * scales.rate)
                 steady = steady and off <= level
         if steady:
             return
-        act(group, members, motions, y, power, buffer)
+        act(engine, members, motions, y, power, buffer)
         if not find:
             push_and_move(buffer, modes, members.shape[0])
         elif not find_modes(buffer, modes, members.shape[0], scales):
@@ -135,7 +135,7 @@ def _driven_into(buffer: GroupBuffer, motions: IntArray, c: int, scales: Scales)
 
 @inlined
 def overborne(
-    group: Group, members: IntArray, motions: IntArray, contacts: int, y: FloatArray,
+    engine: Engine, members: IntArray, motions: IntArray, contacts: int, y: FloatArray,
     scales: Scales, mark: bool, buffer: GroupBuffer,
 ) -> bool:  # fmt: skip
     """Whether there are any at rest that cannot stay for themselves; ``mark``: they yield."""
@@ -147,24 +147,24 @@ def overborne(
             if mark:
                 place, sign = buffer.pairs[c, side], 2.0 * side - 1.0
                 motions[place], slip = YIELDS, buffer.slips[place]
-                buffer.firm[place] = group.surface.static
+                buffer.firm[place] = engine.surface.static
                 slip[0], slip[1] = sign * buffer.kinematics[c, NX], sign * buffer.kinematics[c, NY]
                 slip[2] = 0.0
     for place in range(members.shape[0]):
         if motions[place] == HELD and (mark or not more):
-            excess, ux, uy, w = excess_on(group, members, place, contacts, y, buffer)
+            excess, ux, uy, w = excess_on(engine, members, place, contacts, y, buffer)
             if excess > SLACK:
                 more = True
                 if mark:
                     motions[place], slip = YIELDS, buffer.slips[place]
-                    buffer.firm[place] = group.surface.static
+                    buffer.firm[place] = engine.surface.static
                     slip[0], slip[1], slip[2] = ux, uy, w
     return more
 
 
 @inner
 def find_break_away(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, y: FloatArray,
     scales: Scales, buffer: GroupBuffer,
 ) -> bool:  # fmt: skip
     """Modes, pushes and accelerations where members are at rest; whether found.
@@ -174,40 +174,38 @@ def find_break_away(
     """
     power = buffer.powers[buffer.powers.shape[0] - 1]
     while True:
-        act(group, members, motions, y, power, buffer)
+        act(engine, members, motions, y, power, buffer)
         solved = find_modes(buffer, modes, members.shape[0], scales)
         if solved:
-            turn_directions(group, members, modes, motions, y, scales, True, power, buffer)
-        if not overborne(group, members, motions, modes.shape[0], y, scales, True, buffer):
+            turn_directions(engine, members, modes, motions, y, scales, True, power, buffer)
+        if not overborne(engine, members, motions, modes.shape[0], y, scales, True, buffer):
             return solved
 
 
 @inlined
-def _energy(group: Group, members: IntArray, y: FloatArray) -> float:
+def _energy(engine: Engine, members: IntArray, y: FloatArray) -> float:
     """Kinetic energy of those that can move."""
     total = 0.0
     for place in range(members.shape[0]):
-        disc = group.discs[members[place]]
-        if disc[INV_MASS] > 0.0:
-            square = y[place, VX] ** 2 + y[place, VX + 1] ** 2
-            total += 0.5 * (square / disc[INV_MASS] + y[place, SPIN] ** 2 / disc[INV_INERTIA])
+        disc = engine.discs[members[place]]
+        total += kinetic(disc, y[place, VX], y[place, VX + 1], y[place, SPIN])
     return total
 
 
 @inlined
-def _goes_on(group: Group, number: int, place: int, scales: Scales, buffer: GroupBuffer) -> bool:
+def _goes_on(engine: Engine, number: int, place: int, scales: Scales, buffer: GroupBuffer) -> bool:
     """Whether a small slip, if there is one, grows in the direction that it has."""
-    y, line, radius = buffer.states[0, place], buffer.slips[place], group.discs[number, RADIUS]
-    slip = slip_of(group, number, y)
-    vx, vy, spin = over_floor(group.surface, group.discs[number], y)
+    y, line, radius = buffer.states[0, place], buffer.slips[place], engine.discs[number, RADIUS]
+    slip = slip_of(engine, number, y)
+    vx, vy, spin = over_floor(engine, number, y)
     along = line[0] * vx + line[1] * vy + radius * radius * line[2] * spin
-    gains = gain_of(group, number, place, buffer) > GAINS * scales.rate
+    gains = gain_of(engine, number, place, buffer) > GAINS * scales.rate
     return slip == 0.0 or (gains and along > _SAME * slip)
 
 
 @inlined
 def _stop_creeping(
-    group: Group, members: IntArray, contacts: int, modes: IntArray, y: FloatArray,
+    engine: Engine, members: IntArray, contacts: int, modes: IntArray, y: FloatArray,
     scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """Take out approaches of what touches without pressing that are mere rounding; the heat.
@@ -216,7 +214,7 @@ def _stop_creeping(
     """
     stopped, heat = buffer.modes[1, :contacts], 0.0
     for _ in range(_CREEPS):
-        look(group, members, buffer.pairs[:contacts], y, buffer.kinematics)
+        look(engine, members, buffer.pairs[:contacts], y, buffer.kinematics)
         again = False
         for c in range(contacts):
             comes = buffer.kinematics[c, APPROACH]
@@ -230,22 +228,22 @@ def _stop_creeping(
 
 @inlined
 def _come_to_rest(
-    group: Group, members: IntArray, motions: IntArray, y: FloatArray, scales: Scales
+    engine: Engine, members: IntArray, motions: IntArray, y: FloatArray, scales: Scales
 ) -> bool:
     """Put to rest whom the others have stopped; whether there are any."""
     any_rests = False
     for place in range(members.shape[0]):
         number = members[place]
-        small = slip_of(group, number, y[place]) <= STILL * scales.speed
-        if small and motions[place] == MOVES and can_rest(group, number):
+        small = slip_of(engine, number, y[place]) <= STILL * scales.speed
+        if small and motions[place] == MOVES and can_rest(engine, number):
             motions[place], any_rests = HELD, True
-            rest_on_floor(group, number, y[place])
+            rest_on_floor(engine, number, y[place])
     return any_rests
 
 
 @inner
 def press(
-    group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
+    engine: Engine, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     scales: Scales, modes: IntArray, motions: IntArray, ledger: FloatArray, buffer: GroupBuffer,
 ) -> int:  # fmt: skip
     """See which of the contacts press, which rims stick and which members are at rest.
@@ -275,27 +273,27 @@ def press(
         number = members[place]
         write_over(y[place], states[number])
         motions[place] = MOVES
-        choose_belt(group.regions, group.discs, number, y[place])
-        if group.discs[number, INV_MASS] == 0.0:
+        choose_belt(engine, number, y[place])
+        if engine.discs[number, INV_MASS] == 0.0:
             motions[place] = DRIVEN
-        elif can_rest(group, number):
-            q = slip_of(group, number, y[place])
+        elif can_rest(engine, number):
+            q = slip_of(engine, number, y[place])
             if q <= STILL * scales.speed:
                 motions[place] = HELD
-                rest_on_floor(group, number, y[place])
+                rest_on_floor(engine, number, y[place])
             elif q <= small_slip(scales):
                 motions[place] = YIELDS
-                vx, vy, spin = over_floor(group.surface, group.discs[number], y[place])
+                vx, vy, spin = over_floor(engine, number, y[place])
                 slip, buffer.firm[place] = buffer.slips[place], 1.0
                 slip[0], slip[1], slip[2] = vx / q, vy / q, spin / q
-    count_rows(group, members, t, buffer)
-    place_driven(group, members, motions, t, y, buffer)
+    count_rows(engine, members, t, buffer)
+    place_driven(engine, members, motions, t, y, buffer)
     stopped, again, rounds = buffer.modes[1, : contacts.shape[0]], True, 0
     while again:
         patience(1)
         rounds += 1
-        look(group, members, pairs, y, buffer.kinematics)
-        look_at_ties(group, members, t, y, buffer)
+        look(engine, members, pairs, y, buffer.kinematics)
+        look_at_ties(engine, members, t, y, buffer)
         for c in range(contacts.shape[0]):
             modes[c] = rim_mode(buffer.kinematics[c], scales.speed)
             if modes[c] == STICKS:
@@ -303,17 +301,17 @@ def press(
             stopped[c] = STICKS
             if modes[c] != STICKS and buffer.kinematics[c, GRIP] == math.inf:
                 buffer.kinematics[c, GRIP], stopped[c] = 0.0, APART  # first, whether it presses
-        if not find_break_away(group, members, modes, motions, y, scales, buffer):
+        if not find_break_away(engine, members, modes, motions, y, scales, buffer):
             return UNSOLVED
         again = False
         for place in range(count):
             if motions[place] == YIELDS and not _goes_on(
-                group, members[place], place, scales, buffer
+                engine, members[place], place, scales, buffer
             ):
                 motions[place], again = MOVES, True
             elif (
                 motions[place] == YIELDS and buffer.firm[place] > 1.0
-                and gain_of(group, members[place], place, buffer) > GAINS * scales.rate
+                and gain_of(engine, members[place], place, buffer) > GAINS * scales.rate
             ):  # fmt: skip
                 buffer.firm[place], again = 1.0, True  # it slips: static friction is over
         if again:
@@ -323,22 +321,22 @@ def press(
                 buffer.kinematics[c, GRIP], stopped[c], again = math.inf, STICKS, True
             elif modes[c] == APART or rim_mode(buffer.kinematics[c], scales.speed) != STICKS:
                 stopped[c] = modes[c]
-        before = _energy(group, members, y)
+        before = _energy(engine, members, y)
         heat = stop_slips(buffer, stopped, y)
         ledger[RIM_HEAT] += heat
-        ledger[DRIVE_WORK] += heat + _energy(group, members, y) - before
-        heat = _stop_creeping(group, members, contacts.shape[0], modes, y, scales, buffer)
+        ledger[DRIVE_WORK] += heat + _energy(engine, members, y) - before
+        heat = _stop_creeping(engine, members, contacts.shape[0], modes, y, scales, buffer)
         ledger[RIM_HEAT] += heat
-        if rounds < _CREEPS and _come_to_rest(group, members, motions, y, scales):
+        if rounds < _CREEPS and _come_to_rest(engine, members, motions, y, scales):
             again = True
     goes = False
     for place in range(count):
         if motions[place] == YIELDS:
-            goes = goes or gain_of(group, members[place], place, buffer) > GAINS * scales.rate
+            goes = goes or gain_of(engine, members[place], place, buffer) > GAINS * scales.rate
     for place in range(count):
         number = members[place]
-        if motions[place] == YIELDS and slip_of(group, number, y[place]) == 0.0:
-            gains = gain_of(group, number, place, buffer) > 0.01 * GAINS * scales.rate
+        if motions[place] == YIELDS and slip_of(engine, number, y[place]) == 0.0:
+            gains = gain_of(engine, number, place, buffer) > 0.01 * GAINS * scales.rate
             motions[place] = YIELDS if goes and gains else HELD  # with one go all that it pushes
         write_over(states[number], y[place])
     return TIME_UP

@@ -17,6 +17,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.motion.steppers import times_as_long
 from puck_tables.scene.friction import VX, VY, X, Y
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import is_over, moves_along, nears_another, room_on_floor
 from puck_tables.world.group import (
     DRIVEN,
@@ -33,7 +34,6 @@ from puck_tables.world.group import (
     TIME_UP,
     UNSOLVED,
     YIELDS,
-    Group,
     GroupBuffer,
     IntArray,
     Scales,
@@ -69,17 +69,22 @@ _NOBODY = _OVER_BORDER = cast(int, np.int64(-1))  # in place of a contact, of wh
 
 @inlined
 def _next_row(
-    group: Group, members: IntArray, motions: IntArray, t: float, t_end: float, buffer: GroupBuffer
+    engine: Engine,
+    members: IntArray,
+    motions: IntArray,
+    t: float,
+    t_end: float,
+    buffer: GroupBuffer,
 ) -> float:
     """The next moment, at most ``t_end``, at which a film or a force turns to its next row."""
     end = t_end
     for place in range(members.shape[0]):
-        row = group.spans[members[place], 0] + buffer.passed[place]
-        if row < group.spans[members[place], 1]:
-            end = min(end, group.forcing[row, 0])
+        row = engine.spans[members[place], 0] + buffer.passed[place]
+        if row < engine.spans[members[place], 1]:
+            end = min(end, engine.forcing[row, 0])
         if motions[place] == DRIVEN:
-            first, last = group.drives[members[place], 0], group.drives[members[place], 1]
-            row = group.films[piece_at(group.films, first, last, t)]
+            first, last = engine.drives[members[place], 0], engine.drives[members[place], 1]
+            row = engine.pieces[piece_at(engine.pieces, first, last, t)]
             turns = row[START] + row[DURATION]
             if t < turns < end:
                 end = turns
@@ -88,65 +93,63 @@ def _next_row(
 
 @inner
 def _advance(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
     scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """A step, and what is watched at its end; the error."""
-    error = step(group, members, modes, motions, t, h, scales, buffer)
+    error = step(engine, members, modes, motions, t, h, scales, buffer)
     watch(buffer, modes, scales, True)
     return error
 
 
 @inlined
-def _room_of(group: Group, members: IntArray, place: int, y: FloatArray) -> float:
+def _room_of(engine: Engine, members: IntArray, place: int, y: FloatArray) -> float:
     """How far a member is from a border, in radii, and a little more."""
     number = members[place]
-    room = room_on_floor(group.regions, group.discs, number, y[place])
-    return room / group.discs[number, RADIUS] + _OVER
+    room = room_on_floor(engine, number, y[place])
+    return room / engine.discs[number, RADIUS] + _OVER
 
 
 @inlined
-def _comes_over(group: Group, members: IntArray, buffer: GroupBuffer) -> int:
+def _comes_over(engine: Engine, members: IntArray, buffer: GroupBuffer) -> int:
     """Which member has come over a border, or left it, on a step: there friction bends; −1: none.
 
     One that only just touches one has long been there.
     """
     for place in range(members.shape[0]):
-        if group.discs[members[place], INV_MASS] > 0.0:
-            before = _room_of(group, members, place, buffer.states[0])
-            if before > 0.0 > _room_of(group, members, place, buffer.states[1]):
+        if engine.discs[members[place], INV_MASS] > 0.0:
+            before = _room_of(engine, members, place, buffer.states[0])
+            if before > 0.0 > _room_of(engine, members, place, buffer.states[1]):
                 return place
     return -1
 
 
 @inlined
-def _changes_belts(group: Group, members: IntArray, buffer: GroupBuffer) -> bool:
+def _changes_belts(engine: Engine, members: IntArray, buffer: GroupBuffer) -> bool:
     """Whether a member has come nearer to the velocity of another belt under it, on a step."""
     for place in range(members.shape[0]):
         y = buffer.states[1, place]
-        if nears_another(
-            group.regions, group.discs, members[place], y[X], y[Y], y[VX], y[VY]
-        ):  # fmt: skip
+        if nears_another(engine, members[place], y[X], y[Y], y[VX], y[VY]):
             return True
     return False
 
 
 @inlined
 def _watched(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, c: int, kind: int,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, c: int, kind: int,
     scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """What turns negative, at the end of a step."""
     if kind == _OVER_BORDER:
-        return _room_of(group, members, c, buffer.states[1])
+        return _room_of(engine, members, c, buffer.states[1])
     if c >= 0:
         return buffer.watched[1, c, kind]
-    return -1.0 if sets_off(group, members, modes, motions, scales, buffer) != 0 else 1.0
+    return -1.0 if sets_off(engine, members, modes, motions, scales, buffer) != 0 else 1.0
 
 
 @inner
 def _moment(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
     c: int, kind: int, scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """Until when within a step what is watched is positive; the step ends just after.
@@ -159,8 +162,8 @@ def _moment(
     if c < 0 and kind != _OVER_BORDER:
         close = max(close, _ULP * t)  # a moment after t, or nothing ever moves on
     if kind == _OVER_BORDER:
-        first, enough = _room_of(group, members, c, buffer.states[0]), -_OVER
-        last = _room_of(group, members, c, buffer.states[1])
+        first, enough = _room_of(engine, members, c, buffer.states[0]), -_OVER
+        last = _room_of(engine, members, c, buffer.states[1])
     elif c >= 0:
         first, last = buffer.watched[0, c, kind], buffer.watched[1, c, kind]
     for _ in range(80):
@@ -169,19 +172,19 @@ def _moment(
             middle = 0.5 * (low + high)
         if high - low <= close or last > enough or not low < middle < high:
             break
-        _advance(group, members, modes, motions, t, middle, scales, buffer)
-        value = _watched(group, members, modes, motions, c, kind, scales, buffer)
+        _advance(engine, members, modes, motions, t, middle, scales, buffer)
+        value = _watched(engine, members, modes, motions, c, kind, scales, buffer)
         if value < 0.0:
             high, last, first = middle, value, 0.5 * first
         else:
             low, first, last = middle, value, 0.5 * last
-    _advance(group, members, modes, motions, t, high, scales, buffer)
+    _advance(engine, members, modes, motions, t, high, scales, buffer)
     return high
 
 
 @inlined
 def _opens_midway(
-    group: Group, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
+    engine: Engine, members: IntArray, contacts: int, pieces: FloatArray, count: int, start: float,
     h: float, tol: float, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """How far apart, or into each other, discs in touch are midway, over what they may be.
@@ -196,20 +199,20 @@ def _opens_midway(
         write_piece(piece, start, h, place, buffer)
         on_piece(piece, start + 0.5 * h, buffer.film)
         write_over(trial[place], buffer.film[:6])
-    look(group, members, buffer.pairs[:contacts], trial, buffer.midway)
+    look(engine, members, buffer.pairs[:contacts], trial, buffer.midway)
     for c in range(contacts):
         place = buffer.pairs[c, 0]
-        radius = group.discs[members[place], RADIUS]
+        radius = engine.discs[members[place], RADIUS]
         rounded = ROUNDED * (abs(trial[place, X]) + abs(trial[place, Y]) + radius)
         if buffer.pairs[c, 1] >= 0:
-            radius = min(radius, group.discs[members[buffer.pairs[c, 1]], RADIUS])
+            radius = min(radius, engine.discs[members[buffer.pairs[c, 1]], RADIUS])
         largest = max(largest, abs(buffer.midway[c, GAP]) / (_CLOSED * tol * radius + rounded))
     return largest
 
 
 @inlined
 def _first_change(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, contacts: int, t: float,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, contacts: int, t: float,
     length: float, still_there: bool, scales: Scales, buffer: GroupBuffer,
 ) -> tuple[int, int, float, bool]:  # fmt: skip
     """What is the first to change on a step, of which contact or member, when, and if it was cut.
@@ -222,33 +225,33 @@ def _first_change(
         if c < 0:
             break
         how, which, is_short = PARTS + kind, c, True
-        length = _moment(group, members, modes, motions, t, length, c, kind, scales, buffer)
+        length = _moment(engine, members, modes, motions, t, length, c, kind, scales, buffer)
         if first_negative(buffer, 1, contacts) == (c, kind):
             break
     if still_there:
-        goes = sets_off(group, members, modes, motions, scales, buffer)
+        goes = sets_off(engine, members, modes, motions, scales, buffer)
         if goes < 0:
             return UNSOLVED, which, length, is_short
         if goes > 0:
             how, which, is_short = SETS_OFF, -1, True
             length = _moment(
-                group, members, modes, motions, t, length, _NOBODY, BEGIN, scales, buffer
+                engine, members, modes, motions, t, length, _NOBODY, BEGIN, scales, buffer
             )
-    if how == TIME_UP and group.discs.shape[1] > LIES:  # there are borders on the floor
-        which = _comes_over(group, members, buffer)
+    if how == TIME_UP and engine.discs.shape[1] > LIES:  # there are borders on the floor
+        which = _comes_over(engine, members, buffer)
         if which >= 0:
             how, is_short = OFF_BORDER, True
             length = _moment(
-                group, members, modes, motions, t, length, which, _OVER_BORDER, scales, buffer
+                engine, members, modes, motions, t, length, which, _OVER_BORDER, scales, buffer
             )
-        elif _changes_belts(group, members, buffer):
+        elif _changes_belts(engine, members, buffer):
             how = OFF_BORDER
     return how, which, length, is_short
 
 
 @inlined
 def _slips(
-    group: Group, members: IntArray, motions: IntArray, t: float, length: float, how: int,
+    engine: Engine, members: IntArray, motions: IntArray, t: float, length: float, how: int,
     which: int, scales: Scales, buffer: GroupBuffer,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """What changes, and of whom, with those that come to rest on a step; and if a slip has begun.
@@ -258,11 +261,11 @@ def _slips(
     begun = False
     for place in range(members.shape[0]):
         number = members[place]
-        earlier = slip_at(group, number, buffer.states[0, place], t)
-        q = slip_at(group, number, buffer.states[1, place], t + length)
+        earlier = slip_at(engine, number, buffer.states[0, place], t)
+        q = slip_at(engine, number, buffer.states[1, place], t + length)
         if motions[place] == YIELDS and (q > small_slip(scales) or q < earlier):
             motions[place], begun = MOVES, True
-        elif how == TIME_UP and motions[place] == MOVES and can_rest(group, number):
+        elif how == TIME_UP and motions[place] == MOVES and can_rest(engine, number):
             how = RESTS if q <= STILL * scales.speed and q < earlier else how
             which = place if how == RESTS else which
     return how, which, begun
@@ -280,13 +283,15 @@ def _go_on_from(size: int, contacts: int, buffer: GroupBuffer) -> None:
 
 
 @inlined
-def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, motions: IntArray) -> bool:
+def _is_touched_at_rest(
+    engine: Engine, members: IntArray, contacts: int, motions: IntArray
+) -> bool:
     """Whether anybody is at rest whom somebody touches, or what acts on whom changes."""
     for place in range(members.shape[0]):
         number = members[place]
-        forced = group.spans[number, 0] < group.spans[number, 1]
-        over = is_over(group.regions, group.discs, number) and moves_along(group.surface)
-        changes = contacts > 0 or forced or over or group.surface.spin != 0.0
+        forced = engine.spans[number, 0] < engine.spans[number, 1]
+        over = is_over(engine, number) and moves_along(engine.surface)
+        changes = contacts > 0 or forced or over or engine.surface.spin != 0.0
         if motions[place] == HELD and changes:
             return True
     return False
@@ -294,7 +299,7 @@ def _is_touched_at_rest(group: Group, members: IntArray, contacts: int, motions:
 
 @inner
 def follow(
-    group: Group, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
+    engine: Engine, members: IntArray, contacts: IntArray, states: FloatArray, t: float,
     t_end: float, scales: Scales, modes: IntArray, motions: IntArray, pieces: FloatArray,
     work_rows: FloatArray, buffer: GroupBuffer,
 ) -> tuple[int, int, float, int]:  # fmt: skip
@@ -325,10 +330,10 @@ def follow(
     for place in range(size):
         write_over(y[place], states[members[place]])
     unit = scales.speed / scales.rate
-    count_rows(group, members, t, buffer)
-    rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)
+    count_rows(engine, members, t, buffer)
+    rates_at(engine, members, modes, motions, t, y, BEGIN, scales, buffer)
     watch(buffer, modes, scales, False)
-    still_there = _is_touched_at_rest(group, members, contacts.shape[0], motions)
+    still_there = _is_touched_at_rest(engine, members, contacts.shape[0], motions)
     h, start, passed, count = _FIRST * unit, t, 0.0, 0
     how, which = TIME_UP, -1
     c, kind = first_negative(buffer, 0, contacts.shape[0])
@@ -339,12 +344,12 @@ def follow(
         if count == pieces.shape[1]:
             how = FULL
             break
-        count_rows(group, members, t, buffer)
-        target = _next_row(group, members, motions, t, t_end, buffer)
-        h = min(h, longest_step(group, members, motions, buffer))
+        count_rows(engine, members, t, buffer)
+        target = _next_row(engine, members, motions, t, t_end, buffer)
+        h = min(h, longest_step(engine, members, motions, buffer))
         landed = 1.1 * h >= target - t
         length = target - t if landed else h
-        error = _advance(group, members, modes, motions, t, length, scales, buffer)
+        error = _advance(engine, members, modes, motions, t, length, scales, buffer)
         grows = times_as_long(error, scales.tol, 0.2, 0.1)
         if not error <= scales.tol:
             h = length * grows
@@ -353,7 +358,7 @@ def follow(
                 break
             continue
         opens = _opens_midway(
-            group, members, contacts.shape[0], pieces, count, start + passed, length, scales.tol,
+            engine, members, contacts.shape[0], pieces, count, start + passed, length, scales.tol,
             buffer,
         )  # fmt: skip
         shorter = 5.0 if opens <= 1e-6 else 0.9 * opens ** (-1.0 / 6.0)
@@ -362,7 +367,7 @@ def follow(
             continue
         h = length * min(shorter, grows)
         how, which, length, is_short = _first_change(
-            group, members, modes, motions, contacts.shape[0], t, length, still_there, scales,
+            engine, members, modes, motions, contacts.shape[0], t, length, still_there, scales,
             buffer,
         )  # fmt: skip
         if how == UNSOLVED:
@@ -370,13 +375,13 @@ def follow(
         add_work(length, start + passed, work_rows[count], buffer)
         for place in range(size):
             write_piece(pieces[place, count], start + passed, length, place, buffer)
-        how, which, begun = _slips(group, members, motions, t, length, how, which, scales, buffer)
+        how, which, begun = _slips(engine, members, motions, t, length, how, which, scales, buffer)
         count += 1
         passed += length
         t = target if landed and not is_short else start + passed
         _go_on_from(size, contacts.shape[0], buffer)
         if begun:
-            rates_at(group, members, modes, motions, t, y, BEGIN, scales, buffer)
+            rates_at(engine, members, modes, motions, t, y, BEGIN, scales, buffer)
         if how != TIME_UP:
             break
     for place in range(size):

@@ -113,7 +113,7 @@ def _fill_reactions(
                 out[n, i, 0] = out[n, i, 1] = math.nan
                 continue
             rows = rows_passed(drive, 0, len(drive), times[n])
-            friction = friction_under_disc(engine.regions, engine.discs, i)
+            friction = friction_under_disc(engine, i)
             phase = Phase(model, friction, rows, SLIDES, NO_DIRECTION, 0.0)
             rates(phase, times[n], y, work, FIRST)
             out[n, i, 0], out[n, i, 1] = work[0, LAMBDA], work[0, LAMBDA + 1]

@@ -12,7 +12,7 @@ from puck_tables.kernels.compile import inlined, inner, kernel
 from puck_tables.scene.equations import ROW
 from puck_tables.scene.floor_map import INSIDE, OUTSIDE, OVERLAPS
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y, friction_force
-from puck_tables.scene.ingredients import floor_velocity, is_mixed
+from puck_tables.scene.ingredients import is_mixed
 from puck_tables.scene.over_time import rows_passed
 from puck_tables.world.contact_row import (
     CONTACT_COLUMNS,
@@ -67,6 +67,7 @@ from puck_tables.world.floor_under import (
     step_onto,
 )  # fmt: skip
 from puck_tables.world.group import GroupBuffer, buffer_for
+from puck_tables.world.group_forces import rest_on_floor
 from puck_tables.world.holds import work_of_hold
 from puck_tables.world.layout import (
     EDGE_NUMBER,
@@ -148,7 +149,7 @@ def room_for(discs: int) -> Room:
 @inlined
 def locate(engine: Engine, i: int, t: float, room: Room) -> None:
     """The state of a disc now, and how its floor moves."""
-    move_floor(engine.surface, engine.discs, engine.forcing, engine.spans, i, t)
+    move_floor(engine, i, t)
     state_at(
         engine.kinds[i], engine.segments[i], engine.discs[i], engine.lookups, engine.pieces, t,
         room.work, room.states[i],
@@ -185,9 +186,7 @@ def take_off(engine: Engine, i: int, t: float, room: Room) -> None:
 @inlined
 def stay(engine: Engine, i: int, t: float, room: Room) -> None:
     """A disc at rest on its floor, that others or a cushion may hold there."""
-    state = room.states[i]
-    floor = floor_of(engine.surface, engine.discs[i])
-    state[VX], state[VY], state[SPIN] = floor_velocity(floor, state[X], state[Y])
+    rest_on_floor(engine, i, room.states[i])
     engine.kinds[i] = _start(engine, i, t, room)
     keep_segment(engine, i)
 
@@ -235,10 +234,8 @@ def loses_balance(engine: Engine, i: int, t: float, room: Room) -> bool:
         )
         state[SPIN] += h * disc[INV_INERTIA] * torque
         passed = rows_passed(rows, 0, len(rows), t + h)
-        friction = friction_now(
-            engine.regions, engine.discs, engine.forcing, engine.spans, i, passed, t + h, state
-        )
-        vx, vy, spin = over_floor(engine.surface, disc, state)
+        friction = friction_now(engine, i, passed, t + h, state)
+        vx, vy, spin = over_floor(engine, i, state)
         fx, fy, torque, _ = friction_force(friction, disc[RADIUS], vx, vy, spin)
         h = _MOMENT * engine.scale[0] / engine.scale[1]
     return is_mixed(friction) and math.isnan(fx)
@@ -343,13 +340,13 @@ def cross(engine: Engine, i: int, t: float, k: int, room: Room) -> None:
     enters = int(engine.discs[i, LIES + number]) != OVERLAPS
     how = OVERLAPS
     if not enters:
-        first, last = floor_map_span(engine.regions, engine.discs, i)
+        first, last = floor_map_span(engine, i)
         away = off_border(engine.regions.floor_map[first:last], number, x, y)
         how = OUTSIDE if away > 0.0 else INSIDE
     engine.discs[i, LIES + number] = how
     note(engine, t, ENTERS if enters else LEAVES, i, -1 - k, x, y)
     step_onto(engine, i)
-    choose_belt(engine.regions, engine.discs, i, room.states[i])
+    choose_belt(engine, i, room.states[i])
 
 
 @inlined
@@ -362,9 +359,9 @@ def overhang(engine: Engine, i: int, t: float, k: int, room: Room) -> bool:
     if engine.hangs[i, number] == 0:
         note(engine, t, OVERHANGS, i, -1 - k, room.states[i, X], room.states[i, Y])
     engine.hangs[i, number] = 1 - engine.hangs[i, number]
-    summed = is_over(engine.regions, engine.discs, i)
+    summed = is_over(engine, i)
     step_onto(engine, i)
-    return summed == is_over(engine.regions, engine.discs, i)
+    return summed == is_over(engine, i)
 
 
 @inlined

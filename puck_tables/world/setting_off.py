@@ -75,7 +75,7 @@ def _moves(engine: Engine, room: Room, i: int) -> bool:
         return False
     disc = engine.discs[i]
     steep = engine.surface.static * disc[DECEL] <= math.hypot(disc[PULL_X], disc[PULL_Y])
-    return steep or slips(engine.surface, disc, room.states[i])
+    return steep or slips(engine, i, room.states[i])
 
 
 @inlined

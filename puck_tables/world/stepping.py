@@ -18,6 +18,7 @@ from puck_tables.motion.steppers import DORMAND_PRINCE
 from puck_tables.scene.friction import VX, X, Y, size
 from puck_tables.scene.ingredients import floor_acceleration
 from puck_tables.world.complementarity import load_of, most
+from puck_tables.world.engine_state import Engine
 from puck_tables.world.floor_under import floor_of
 from puck_tables.world.group import (
     APART,
@@ -37,7 +38,6 @@ from puck_tables.world.group import (
     TO_END,
     WATCHES,
     YIELDS,
-    Group,
     GroupBuffer,
     IntArray,
     Scales,
@@ -109,7 +109,7 @@ def first_negative(buffer: GroupBuffer, end: int, count: int) -> tuple[int, int]
 
 @inner
 def sets_off(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, scales: Scales,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, scales: Scales,
     buffer: GroupBuffer,
 ) -> int:  # fmt: skip
     """Whether what presses on the discs at rest moves one: 1, or 0; −1: not solved.
@@ -119,39 +119,39 @@ def sets_off(
     """
     contacts = modes.shape[0]
     y = buffer.states[1]
-    if not overborne(group, members, motions, contacts, y, scales, False, buffer):
+    if not overborne(engine, members, motions, contacts, y, scales, False, buffer):
         return 0
     trial, does = buffer.modes[0, :contacts], buffer.motions[: members.shape[0]]
     for c in range(contacts):
         trial[c] = modes[c]
     for place in range(members.shape[0]):
         does[place] = motions[place]
-    if not find_break_away(group, members, trial, does, y, scales, buffer):
+    if not find_break_away(engine, members, trial, does, y, scales, buffer):
         return -1
     for place in range(members.shape[0]):
         begins = motions[place] == HELD and does[place] == YIELDS
-        if begins and gain_of(group, members[place], place, buffer) > GAINS * scales.rate:
+        if begins and gain_of(engine, members[place], place, buffer) > GAINS * scales.rate:
             return 1
     return 0
 
 
 @inner
 def rates_at(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, y: FloatArray,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, t: float, y: FloatArray,
     stage: int, scales: Scales, buffer: GroupBuffer,
 ) -> None:  # fmt: skip
     """Rates of states y (m, 6) and of the ledger into a stage; the driven are put into place."""
     contacts, power = modes.shape[0], buffer.powers[stage]
-    place_driven(group, members, motions, t, y, buffer)
-    act(group, members, motions, y, power, buffer)
-    look(group, members, buffer.pairs[:contacts], y, buffer.kinematics)
-    look_at_ties(group, members, t, y, buffer)
+    place_driven(engine, members, motions, t, y, buffer)
+    act(engine, members, motions, y, power, buffer)
+    look(engine, members, buffer.pairs[:contacts], y, buffer.kinematics)
+    look_at_ties(engine, members, t, y, buffer)
     push_and_move(buffer, modes, members.shape[0])
     for place in range(members.shape[0]):
         if motions[place] == YIELDS:
-            turn_directions(group, members, modes, motions, y, scales, False, power, buffer)
+            turn_directions(engine, members, modes, motions, y, scales, False, power, buffer)
             break
-    power_of_contacts(group, members, motions, contacts, y, power, buffer)
+    power_of_contacts(engine, members, motions, contacts, y, power, buffer)
     for place in range(members.shape[0]):
         write_over(buffer.stages[stage, place], y[place, 3:])
         write_over(buffer.stages[stage, place, 3:], buffer.rates[place])
@@ -159,7 +159,7 @@ def rates_at(
 
 @inner
 def step(
-    group: Group, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
+    engine: Engine, members: IntArray, modes: IntArray, motions: IntArray, t: float, h: float,
     scales: Scales, buffer: GroupBuffer,
 ) -> float:  # fmt: skip
     """From states[0] at t, with its rates in stage 0, over h into states[1]; the error.
@@ -174,11 +174,11 @@ def step(
                 for j in range(stage):
                     total += _A[stage, j] * stages[j, place, i]
                 new[place, i] = y[place, i] + h * total
-        rates_at(group, members, modes, motions, t + _C[stage] * h, new, stage, scales, buffer)
-    largest, turning = 0.0, group.surface.spin != 0.0 or group.surface.changes != 0.0
+        rates_at(engine, members, modes, motions, t + _C[stage] * h, new, stage, scales, buffer)
+    largest, turning = 0.0, engine.surface.spin != 0.0 or engine.surface.changes != 0.0
     for place in range(members.shape[0]):
         if motions[place] == HELD:
-            rest_on_floor(group, members[place], new[place])
+            rest_on_floor(engine, members[place], new[place])
         if motions[place] == DRIVEN or (motions[place] == HELD and not turning):
             continue
         for i in range(6):
@@ -187,7 +187,7 @@ def step(
                 error += _E[j] * stages[j, place, i]
             scale = scales.speed if i > 2 else scales.speed * scales.speed / scales.rate
             if i % 3 == 2:
-                scale /= group.discs[members[place], RADIUS]
+                scale /= engine.discs[members[place], RADIUS]
             share = abs(h * error) / scale
             if not share <= largest:  # no number stays the largest, whoever comes after
                 largest = share if share < math.inf else math.inf
@@ -197,10 +197,10 @@ def step(
         write_over(buffer.powers[END], buffer.powers[STAGES - 1])
     elif largest < math.inf:
         close_gaps(buffer, modes, new)
-        look(group, members, buffer.pairs[: modes.shape[0]], new, buffer.kinematics)
-        look_at_ties(group, members, t + h, new, buffer)
+        look(engine, members, buffer.pairs[: modes.shape[0]], new, buffer.kinematics)
+        look_at_ties(engine, members, t + h, new, buffer)
         stop_slips(buffer, modes, new)
-        rates_at(group, members, modes, motions, t + h, new, END, scales, buffer)
+        rates_at(engine, members, modes, motions, t + h, new, END, scales, buffer)
         for place in range(members.shape[0]):
             if not math.isfinite(stages[END, place, VX]):  # it tips there
                 return math.inf
@@ -208,20 +208,22 @@ def step(
 
 
 @inlined
-def longest_step(group: Group, members: IntArray, motions: IntArray, buffer: GroupBuffer) -> float:
+def longest_step(
+    engine: Engine, members: IntArray, motions: IntArray, buffer: GroupBuffer
+) -> float:
     """What steps from states[0] may have where a slip is about to end, or has just begun."""
     longest = math.inf
     for place in range(members.shape[0]):
         number = members[place]
-        if motions[place] == MOVES and can_rest(group, number):
-            radius, rate = group.discs[number, RADIUS], buffer.stages[0, place]
-            floor, y = floor_of(group.surface, group.discs[number]), buffer.states[0, place]
+        if motions[place] == MOVES and can_rest(engine, number):
+            radius, rate = engine.discs[number, RADIUS], buffer.stages[0, place]
+            floor, y = floor_of(engine.surface, engine.discs[number]), buffer.states[0, place]
             cx, cy = floor_acceleration(floor, y[X], y[Y], rate[0], rate[1])
             pull = size(rate[3] - cx, rate[4] - cy, radius * (rate[5] - floor.turn))
-            q = slip_of(group, number, y)
-            disc = group.discs[number]
+            q = slip_of(engine, number, y)
+            disc = engine.discs[number]
             turns = max(disc[INV_MASS], 0.5 * radius * radius * disc[INV_INERTIA])
-            pull = max(pull / _NEAR, load_on(group, number) * turns / _TURN)
+            pull = max(pull / _NEAR, load_on(engine, number) * turns / _TURN)
             if longest * pull > q:
                 longest = q / pull
     return longest

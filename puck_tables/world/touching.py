@@ -15,7 +15,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.contact_row import ACTS, HOPS, NX, NY, E, approach, opening, prepare_contact
-from puck_tables.world.contact_search import HARDLY
+from puck_tables.world.contact_search import HARDLY, is_among
 from puck_tables.world.engine_state import IMPACT, N_EVENTS, PARTNER, TIME, WHAT, WHO, Engine, Whole
 from puck_tables.world.floor_under import is_over_belts, outruns_law, over_floor, slips
 from puck_tables.world.layout import (
@@ -37,16 +37,6 @@ from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
 from puck_tables.world.segment_starts import CURRENT, LOOKED_AT, STALE, Room, locate
 
 BLUR = 1e-15  # of the time since the start, at full speed: another
-
-
-@inlined
-def _contact_of(room: Room, count: int, i: int, j: int) -> bool:
-    """Whether a contact is among those found."""
-    for n in range(count):
-        a, b = room.contacts[n, 0], room.contacts[n, 1]
-        if (a == i and b == j) or (a == j and b == i):
-            return True
-    return False
 
 
 @inner
@@ -96,7 +86,7 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                 dy = room.states[j, Y] - room.states[i, Y]
                 if abs(dx) > 1.01 * reach or math.hypot(dx, dy) - reach > near:
                     continue
-                if not _contact_of(room, count, i, j):
+                if not is_among(room.contacts, count, i, j):
                     if count == room.contacts.shape[0]:
                         return -1
                     room.contacts[count, 0], room.contacts[count, 1] = min(i, j), max(i, j)
@@ -120,8 +110,8 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
         un, _ = approach(engine, i, j, row[NX], row[NY], room.states)
         row[ACTS] = 1.0 if abs(un) <= HARDLY * engine.scale[0] else 0.0
         # what neither presses nor parts is a group, too: alone, both would look for each other
-        moves = slips(engine.surface, engine.discs[i], room.states[i])
-        moves = moves or (j >= 0 and slips(engine.surface, engine.discs[j], room.states[j]))
+        moves = slips(engine, i, room.states[i])
+        moves = moves or (j >= 0 and slips(engine, j, room.states[j]))
         least = HARDLY * engine.scale[1] if moves else -HARDLY * engine.scale[1]
         if row[ACTS] > 0.0 and opening(engine, i, j, t, row, room.states) < least:
             pressed = True
@@ -131,9 +121,8 @@ def press_somewhere(engine: Engine, count: int, t: float, room: Room) -> bool:
 @inlined
 def sets_off_too_fast(engine: Engine, i: int, state: FloatArray) -> bool:
     """Whether its rim slips faster than the friction law of the floor is known."""
-    ux, uy, w = over_floor(engine.surface, engine.discs[i], state)
-    free = engine.discs[i, INV_MASS] > 0.0
-    return free and outruns_law(engine.regions, engine.discs[i, RADIUS], ux, uy, w)
+    ux, uy, w = over_floor(engine, i, state)
+    return engine.discs[i, INV_MASS] > 0.0 and outruns_law(engine, i, ux, uy, w)
 
 
 @inlined
@@ -142,9 +131,9 @@ def is_integrated(engine: Engine, i: int, state: FloatArray) -> bool:
     disc = engine.discs[i]
     if disc[INTEGRATED] == 0.0 or engine.kinds[i] == GONE:
         return False
-    if slips(engine.surface, disc, state) or engine.surface.spin != 0.0 or disc[TWIST] != 0.0:
+    if slips(engine, i, state) or engine.surface.spin != 0.0 or disc[TWIST] != 0.0:
         return True
-    if is_over_belts(engine.regions, engine.discs, i):
+    if is_over_belts(engine, i):
         return True
     forced = engine.spans[i, 0] < engine.spans[i, 1]
     holds = disc[DECEL] if disc[INTEGRATED] == 1.0 else 0.0
@@ -163,7 +152,7 @@ MOST_BACK = 64  # events
 @inlined
 def _slip2(engine: Engine, i: int, states: FloatArray) -> float:
     """Q² of a disc over the floor."""
-    vx, vy, spin = over_floor(engine.surface, engine.discs[i], states[i])
+    vx, vy, spin = over_floor(engine, i, states[i])
     rim = engine.discs[i, RADIUS] * spin
     return vx**2 + vy**2 + rim * rim
 
