@@ -49,13 +49,11 @@ def runner(language: str, puck: pt.Puck, folder: Path, steps: int = 100_000) -> 
     return make(text.replace("part < 100000", f"part < {steps}"), folder)
 
 
-@pytest.mark.parametrize("language", RUNNERS)
-@pytest.mark.parametrize("name", PUCKS)
-def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path) -> None:
-    puck, rng = PUCKS[name], np.random.default_rng(8)
-    run, judge = runner(language, puck, tmp_path), judge_of(puck)
+@cache
+def frictions(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Slips and angles of the body (n, 4), force and torque (n, 3), as the judge has it."""
+    rng, judge, count = np.random.default_rng(8), judge_of(PUCKS[name]), 150
     edge = judge.polygons[0] if judge.polygons else np.eye(2) * judge.reach
-    count = 150
     slips = rng.normal(size=(count, 3)) * [1.0, 1.0, 1.0 / judge.reach]
     slips[:, 2] *= 10.0 ** rng.uniform(-4.0, 3.0, count)
     slips[:20, 2] = 0.0
@@ -64,15 +62,23 @@ def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path)
         one, two = (edge[(n + m) % len(edge)] for m in range(2))
         at = one + (n % 4) / 4.0 * (two - one)
         slips[n, :2] = slips[n, 2] * np.array([at[1], -at[0]])
-    angles = rng.uniform(-4.0, 4.0, count)
-    found, codes = run("wrench", np.column_stack([slips, angles]))
-    assert not codes.any()
-    for got, (ux, uy, w), angle in zip(found, slips.tolist(), angles, strict=True):
+    rows, wanted = np.column_stack([slips, rng.uniform(-4.0, 4.0, count)]), []
+    for ux, uy, w, angle in rows.tolist():
         c, s = np.cos(angle), np.sin(angle)
         force, torque = judge.friction(c * ux + s * uy, c * uy - s * ux, w)
-        turned = [c * force[0] - s * force[1], s * force[0] + c * force[1]]
-        np.testing.assert_allclose(got[:2], turned, atol=2e-13)
-        assert got[2] == pytest.approx(torque, abs=4e-13 * judge.reach)
+        wanted.append([c * force[0] - s * force[1], s * force[0] + c * force[1], torque])
+    return rows, np.array(wanted)
+
+
+@pytest.mark.parametrize("language", RUNNERS)
+@pytest.mark.parametrize("name", PUCKS)
+def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path) -> None:
+    rows, wanted = frictions(name)
+    found, codes = runner(language, PUCKS[name], tmp_path)("wrench", rows)
+    assert not codes.any()
+    np.testing.assert_allclose(found[:, :2], wanted[:, :2], atol=2e-13)
+    torque, reach = wanted[:, 2], judge_of(PUCKS[name]).reach
+    np.testing.assert_allclose(found[:, 2], torque, rtol=0.0, atol=4e-13 * reach)
 
 
 @cache

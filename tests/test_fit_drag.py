@@ -1,7 +1,7 @@
 """Friction with drag of the speed squared, as air tables have it, and with drag of the spin.
 
-Films are made by an integrator of its own: a flat disc under friction as elliptic integrals of the
-ratio of speed and spin, which scipy computes, and drags; on a straight line, as such a disc goes.
+Films are made by an integrator of its own (:mod:`disc_judge`), on a straight line, as such a
+disc goes.
 """
 
 from __future__ import annotations
@@ -10,54 +10,25 @@ import math
 
 import numpy as np
 import pytest
+from disc_judge import slid
+from film_judge import G
 from rarely import few
-from scipy.integrate import solve_ivp
-from scipy.special import ellipe, ellipk
 
 import puck_tables as pt
 from puck_tables.fitting.forward_model import Moving, states_of
 from puck_tables.fitting.speed_motion import SpeedFriction, SpeedLaunch, speed_paths
 from puck_tables.fitting.unit_motions import PlainMotions
 
-G, R = 9.80665, 0.03165
+R = 0.03165
 PUCK = pt.Puck(R, height=0.0)
 NOISE = (5e-4, 5e-3)
 
 
-def friction(v: float, rim: float) -> tuple[float, float]:
-    """Force and torque of a flat disc over f N and f N r, at speeds v, rim ≥ 0 of its motion."""
-    if rim < 1e-3 * v:
-        return 1.0, 0.25 * rim / v
-    if v < 1e-3 * rim:
-        return v / rim, 2.0 / 3.0
-    s = v / rim
-    if s <= 1.0:
-        e, k = ellipe(s * s), ellipk(s * s)
-        force = (s + 1.0 / s) * e + (s - 1.0 / s) * k
-        torque = (4.0 - 2.0 * s * s) * e + (s * s - 1.0) * k
-    else:
-        m = 1.0 / (s * s)
-        e, k = ellipe(m), ellipk(m)
-        force = (1.0 + s * s) * e + (1.0 - s * s) * k
-        torque = (4.0 * s - 2.0 * s**3) * e + (-5.0 * s + 2.0 * s**3 + 3.0 / s) * k
-    return 4.0 * force / (3.0 * math.pi), 4.0 * torque / (9.0 * math.pi)
-
-
 def motion(f, linear, air, spinning, v, spin, times):
     """Way and angle at times (n,) of a launch along a line."""
-
-    def rates(_, y):
-        force, torque = friction(max(y[2], 0.0), R * abs(y[3]))
-        turned = -2.0 * f * G * torque / R * np.sign(y[3]) - (linear + spinning) * y[3]
-        return [y[2], y[3], -f * G * force - (linear + air * abs(y[2])) * y[2], turned]
-
-    def rests(_, y):
-        return math.hypot(y[2], R * y[3]) - 1e-5 * math.hypot(v, R * spin)
-
-    rests.terminal = True
-    run = solve_ivp(rates, (0.0, times[-1]), [0.0, 0.0, v, spin], "DOP853", rtol=1e-10,
-                    atol=1e-12, events=rests, dense_output=True)  # fmt: skip
-    return run.sol(np.minimum(times, run.t[-1]))[:2]
+    drags = {"drag": linear, "air": air, "spin_drag": spinning}
+    until = 1e-5 * math.hypot(v, R * spin)
+    return slid(lambda u: f + 0.0 * u, R, (v, 0.0), spin, times, **drags, until=until)[[0, 2]]
 
 
 def film(rng, frames=250, **how):

@@ -7,7 +7,8 @@ import math
 import film_judge
 import numpy as np
 import pytest
-from drawn_films import KINDS, cut, drawn, summed, wrong
+from disc_judge import slid
+from drawn_films import KINDS, cut, drawn, wrong
 from rarely import thorough
 
 import puck_tables as pt
@@ -108,7 +109,7 @@ def test_spins_are_slow_unless_that_is_excluded_in_joint_fits_too(seed):
     for n, spin in enumerate(spins):
         angle, speed = rng.uniform(0.0, 6.28), rng.uniform(0.1, 0.4)
         velocity = speed * math.cos(angle), speed * math.sin(angle)
-        true = summed(velocity, spin, lambda u: 2e-4 + 0.01 * u, 0.025, times)
+        true = slid(lambda u: 2e-4 + 0.01 * u, 0.025, velocity, spin, times)
         place = true[:2].T + 3e-5 * rng.normal(size=(60, 2)) + 2.0 * n
         tracks.append(pt.Track(times, place, true[2] + 1e-3 * rng.normal(size=60), f"puck {n}"))
     found = pt.fit(tracks, pt.Puck(radius=0.025))

@@ -9,9 +9,10 @@ import film_judge
 import impacts_judge
 import numpy as np
 import pytest
+from disc_judge import slid
 from film_judge import G
 from rarely import few, thorough
-from test_fit_speed import FLAT, film, slid
+from test_fit_speed import FLAT, RADIUS, TIMES, film
 
 import puck_tables as pt
 from puck_tables.fitting.problem import Problem
@@ -59,8 +60,9 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
     rng = np.random.default_rng([35, 100, seed])
     rest, fast, scale = rng.uniform(0.25, 0.35), rng.uniform(0.1, 0.15), rng.uniform(0.2, 1.0)
     path = slid(
-        lambda u: fast + (rest - fast) * np.exp(-u / scale), way_of(rng, rng.uniform(1.2, 1.8)),
-        rng.uniform(15.0, 40.0) * rng.choice([-1.0, 1.0]),
+        lambda u: fast + (rest - fast) * np.exp(-u / scale), RADIUS,
+        way_of(rng, rng.uniform(1.2, 1.8)), rng.uniform(15.0, 40.0) * rng.choice([-1.0, 1.0]),
+        TIMES,
     )  # fmt: skip
     found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0})
     assert found.complaints

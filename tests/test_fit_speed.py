@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
-from film_judge import G, noisy
+from disc_judge import slid
+from film_judge import noisy
 from rarely import few
-from scipy.integrate import solve_ivp
 from scipy.interpolate import PchipInterpolator
 
 import puck_tables as pt
@@ -20,35 +19,10 @@ SPEEDS, VALUES = [0.0, 1.0, 4.0], [0.20, 0.14, 0.17]
 FLAT = pt.Puck(radius=RADIUS)
 
 
-Law = Callable[[np.ndarray], np.ndarray]
-
-
-def slid(law: Law, velocity: tuple[float, float], spin: float) -> np.ndarray:
-    """x, y, angle (3, n) of a flat puck: rings of the base, their elements one by one."""
-    rho = RADIUS * np.sqrt((np.arange(64) + 0.5) / 64)
-    theta = 2.0 * math.pi * (np.arange(128) + 0.5) / 128
-    px, py = (np.outer(rho, trig).ravel() for trig in (np.cos(theta), np.sin(theta)))
-
-    def rates(_: float, z: np.ndarray) -> list[float]:
-        ux, uy = z[3] - z[5] * py, z[4] + z[5] * px
-        u = np.hypot(ux, uy)
-        pull = G * law(u) / np.maximum(u, 1e-9)
-        turn = -2.0 / RADIUS**2 * np.mean(pull * (px * uy - py * ux))
-        return [*z[3:], -np.mean(pull * ux), -np.mean(pull * uy), turn]
-
-    stop = lambda _, z: math.hypot(z[3], z[4], RADIUS * z[5]) - 1e-3  # noqa: E731
-    stop.terminal = True
-    start = [0.0, 0.0, 0.0, *velocity, spin]
-    found = solve_ivp(
-        rates, (0.0, 3.0), start, "RK45", rtol=1e-6, atol=1e-8, dense_output=True, events=stop
-    )
-    return found.sol(np.minimum(TIMES, found.t[-1]))[:3]
-
-
 @pytest.fixture(scope="module")
 def true() -> np.ndarray:
     """Under a law of straight lines."""
-    return slid(lambda u: np.interp(u, SPEEDS, VALUES), (1.8, 0.4), 45.0)
+    return slid(lambda u: np.interp(u, SPEEDS, VALUES), RADIUS, (1.8, 0.4), 45.0, TIMES)
 
 
 def film(true: np.ndarray, seed: int) -> pt.Track:
@@ -81,7 +55,7 @@ def test_a_law_of_rows_means_the_same_in_a_fit_and_in_a_scene(seed):
     values = rng.uniform(0.1, 0.3, speeds.size)
     way, spin = rng.uniform(0.0, 2.0 * math.pi), rng.uniform(15.0, 40.0) * rng.choice([-1.0, 1.0])
     velocity = 1.5 * math.cos(way), 1.5 * math.sin(way)
-    path = slid(PchipInterpolator(speeds, values), velocity, spin)
+    path = slid(PchipInterpolator(speeds, values), RADIUS, velocity, spin, TIMES)
     found = pt.fit(film(path, seed), FLAT, fixed={"delta": 0.0}, slip_speeds=speeds)
     _, f, errors = found.friction_over()
     told = np.array([found[f"friction_{k}"].determined for k in range(speeds.size)])

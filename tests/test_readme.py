@@ -38,6 +38,7 @@ def console_examples(text: str) -> list[tuple[str, str]]:
 def test_console_examples(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """In order, in one folder: numbers to seven digits, those of rounding size to a factor 10."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("puck_tables.plot.movie._PICTURES", 2)  # a second: a gif takes its time
     for command, output in console_examples(TEXTS[page]):
         program, *arguments = shlex.split(command)
         assert program == "puck"

@@ -1,15 +1,17 @@
-"""Scenes against scipy with friction by quadrature, and against themselves at the finest."""
+"""Scenes against the integrator of the tests, and against themselves at the finest."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from random_scenes import draw
 from rarely import nightly
-from scene_judge import Judge
+from report import written
+from scene_truth import truth
 from scenes import simulate_scene
 
 from puck_tables import Scene
@@ -70,44 +72,25 @@ SMOOTH = {
         launch={"velocity": [2.0, 0.4], "orientation": 0.0},
         constraint={"kind": "blade", "side_slip": 0.4},
     ),
+    "force over time": puck() | {
+        "drive": [[-0.1, 0, 0, 0], [0.3, 8, 0, 1], [0.5, 0, -6, 0], [0.9, 2, 2, -1]]
+    },
 }  # fmt: skip
 for _scene in SMOOTH.values():
     if _scene["launch"]["velocity"] is None:
         del _scene["launch"]["velocity"]
 
 
-@pytest.fixture(scope="module")
-def truth() -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Moments before the first event, and what the judge says."""
-    found = {}
-    for name, scene in SMOOTH.items():
-        run = simulate_scene(scene)
-        last = 0.97 * min([run.end_time, *(event[0] for event in run.events)])
-        times = last * np.array([0.1, 0.5, 0.9, 1.0])
-        found[name] = times, Judge(scene).states(times)
-    return found
-
-
 @pytest.mark.thorough
-@pytest.mark.parametrize("tol", [1e-6, 1e-9, 1e-11])
 @pytest.mark.parametrize("name", SMOOTH)
-def test_as_the_judge_has_it(name, tol, truth):
-    times, states = truth[name]
-    scene = {**SMOOTH[name], "time": 2.0, "tol": tol}
-    run = simulate_scene(scene, times)
-    found = np.stack([run.columns[column] for column in NAMES])
-    assert np.max(np.abs(found - states) / scales(scene)[:, None]) <= tol
-
-
-def test_force_over_time_as_the_judge_has_it(tmp_path: Any) -> None:
-    table = [[-0.1, 0, 0, 0], [0.3, 8, 0, 1], [0.5, 0, -6, 0], [0.9, 2, 2, -1]]
-    path = tmp_path / "force.csv"
-    np.savetxt(path, table, delimiter=",")
-    scene = puck(force={"over_time": str(path)})
-    times = np.array([0.2, 0.3, 0.45, 0.5, 0.55])
-    states = Judge(scene).states(times)
+def test_as_the_judge_has_it(name: str, tmp_path: Path) -> None:
+    """At moments before the first event."""
+    first = simulate_scene(written(SMOOTH[name], tmp_path))
+    last = 0.97 * min([first.end_time, *(event[0] for event in first.events)])
+    times = last * np.array([0.1, 0.5, 0.9, 1.0])
+    states = truth(SMOOTH[name], times)["states"][:, :6].T
     for tol in (1e-6, 1e-9, 1e-11):
-        scene |= {"time": 2.0, "tol": tol}
+        scene = written(SMOOTH[name], tmp_path, time=2.0, tol=tol)
         run = simulate_scene(scene, times)
         found = np.stack([run.columns[column] for column in NAMES])
         assert np.max(np.abs(found - states) / scales(scene)[:, None]) <= tol

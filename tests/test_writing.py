@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -155,18 +156,21 @@ def test_a_folder_that_vanishes_during_the_work(name, folder, monkeypatch):
     assert not Path("gone").exists()
 
 
-@pytest.fixture
+@contextmanager
 def little_room() -> Iterator[None]:
-    """No file may grow beyond 600 bytes: what a disk with no room does, without a patch."""
+    """No file may grow beyond 600 bytes, pytest's own neither: a full disk, without a patch."""
     room = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (600, room[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, room)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, room)
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_a_disk_that_is_really_full(name: str, folder: Path, little_room: None):
-    said = refused(name, "new").splitlines()[-1]
+def test_a_disk_that_is_really_full(name: str, folder: Path):
+    with little_room():
+        said = refused(name, "new").splitlines()[-1]
     assert said.startswith("Error: cannot ") and "File too large" in said
     assert content(folder) == {}
 

@@ -12,6 +12,7 @@ import sys
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import ROOT
 
@@ -54,18 +55,14 @@ def test_the_lines_run_and_are_right(engine: str, tmp_path: Path):
 
 def test_velocities_of_the_middle_of_a_step_are_of_second_order():
     """What the page says of engines that move a body by the velocity that they are given."""
-    names: dict[str, object] = {}
-    exec(pt.export_source("python", "state", tol=1e-9).text, names)
     after = PUCK.simulate((2.0, 0.0), 30.0, times=[1.5], exact=True)
     truth, errors = (after.x[0], after.y[0]), []
     for steps in (30, 60, 120):
-        dt, out = 1.0 / steps, [0.0] * 6
-        place, motion = [0.0, 0.0], (2.0, 0.0, 30.0)
+        dt, place, velocity, spin = 1.0 / steps, np.zeros(2), (2.0, 0.0), 30.0
         for n in range(3 * steps // 2):
-            state = names["state"]
-            state(*motion, PUCK.delta, PUCK.decel, PUCK.radius, dt if n else dt / 2, out)
-            motion = out[3], out[4], out[5]
-            place = [place[0] + dt * out[3], place[1] + dt * out[4]]
+            state = PUCK.states(velocity, spin, [dt if n else dt / 2])
+            velocity, spin = (state.vx[0], state.vy[0]), state.spin[0]
+            place += dt * np.array(velocity)
         errors.append(math.dist(place, truth))
     assert errors[1] < 1e-5
     assert [one / two for one, two in pairwise(errors)] == pytest.approx([4.0, 4.0], abs=0.4)

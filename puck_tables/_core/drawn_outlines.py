@@ -13,7 +13,7 @@ from puck_tables._core.arrays import FloatArray, number_in
 from puck_tables._core.own_folder import say
 from puck_tables._core.quantities import X, Y
 from puck_tables._core.read_columns import numbers_of
-from puck_tables._core.safe_read import is_number, read_whole
+from puck_tables._core.safe_read import content_of, is_number
 from puck_tables.errors import InputError
 
 SUFFIXES = (".csv", ".svg")  # of files of outlines
@@ -45,10 +45,7 @@ def outlines_of(entries: Any) -> list[FloatArray]:
     [[0.01, 0.0], [0.03, 0.0], [0.03, 0.01], [0.01, 0.01]]
     """
     if isinstance(entries, str) and entries.lower().endswith(".svg"):
-        try:
-            return _drawn(entries, read_whole(entries, _MOST_BYTES))
-        except OSError as error:
-            raise InputError(f"cannot read {entries}: {error.strerror or error}") from None
+        return _drawn(entries, content_of(entries, _MOST_BYTES))
     return [numbers_of(entries, (X, Y), 2, _MOST_BYTES, "corners").rows]
 
 

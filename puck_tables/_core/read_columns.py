@@ -29,7 +29,7 @@ from puck_tables._core.quantities import (
     unit_of,
     with_names,
 )
-from puck_tables._core.safe_read import read_whole, refuse_no_text, refuse_others
+from puck_tables._core.safe_read import content_of, refuse_no_text, refuse_others
 from puck_tables._core.text import HEAD, MINUS, TextForm, encoding_of, is_row, number, text_form_of
 from puck_tables._core.text_rows import header_of, read_columns
 from puck_tables._core.units import EXAMPLES, unit_size
@@ -96,7 +96,7 @@ def numbers_of(
     """
     if not isinstance(entries, str | Path):
         return Numbers(_checked(entries, columns, needed, name), ("",) * len(columns))
-    content = _content(entries, most)
+    content = content_of(entries, most)
     read = _read if len(content) <= _KEPT else _read.__wrapped__
     return read(str(entries), content, tuple(columns), needed)
 
@@ -168,7 +168,7 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
     ...     list_of(file, TIME, 1000).tolist()
     [0.0, 0.0125]
     """
-    content = _content(path, most)
+    content = content_of(path, most)
     refuse_others(path, content[:HEAD])
     refuse_no_text(path, content[:HEAD])
     encoding = encoding_of(path, content[:HEAD])
@@ -183,14 +183,6 @@ def list_of(path: str | Path, column: InputColumn, most: int) -> FloatArray | No
     if not np.isfinite(values := np.array(numbers, float)).all():
         return None
     return values * unit_of(str(path), heading, column)[1]
-
-
-def _content(path: str | Path, most: int) -> bytes:
-    """The content of a file."""
-    try:
-        return read_whole(path, most)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
 
 
 def _checked(entries: Any, columns: Sequence[InputColumn], needed: int, name: str) -> FloatArray:

@@ -31,6 +31,14 @@ def read_whole(path: str | Path, largest: int) -> bytes:
         return file.read(os.fstat(file.fileno()).st_size)  # not more: it is allocated before
 
 
+def content_of(path: str | Path, largest: int) -> bytes:
+    """The bytes of a file as :func:`read_whole` has them; InputError says why there are none."""
+    try:
+        return read_whole(path, largest)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+
+
 def opened(path: str | Path, largest: int) -> BinaryIO:
     """A regular file, open for reading; refused as by :func:`read_whole`."""
     # not blocking: to open a pipe would wait for who writes to it

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray, finite_array
-from puck_tables._core.safe_read import read_whole
+from puck_tables._core.safe_read import content_of
 from puck_tables._core.text import text_form_of
 from puck_tables._core.text_rows import read_columns
 from puck_tables._core.units import PIXEL, factor, unit_in
@@ -137,10 +137,7 @@ def plane_from(marks: Marks) -> Plane:
     """
     if not isinstance(marks, str | Path):
         return plane_of(marks)
-    try:
-        look = text_form_of(marks, read_whole(marks, _LARGEST))
-    except OSError as error:
-        raise InputError(f"cannot read {marks}: {error.strerror or error}") from None
+    look = text_form_of(marks, content_of(marks, _LARGEST))
     form = f"{marks} must have the columns u, v, x, y: the pixels and the place of each mark"
     if look.width != 4:
         raise InputError(f"{form}; it has {look.width}")

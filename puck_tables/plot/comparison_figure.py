@@ -116,8 +116,7 @@ def _draw_speeds(axes: Axes, result: Comparison) -> None:
         if run.seen_speed is not None and run.seen_rim is not None:
             axes.plot(run.time, run.seen_speed, color=colour, linewidth=1.0)
             axes.plot(run.time, run.seen_rim, color=colour, linewidth=1.0, linestyle="--")
-    axes.set_ylabel("m/s")
-    _over_time(axes, result)
+    _over_time(axes, result, "m/s")
     axes.legend(frameon=False, fontsize=8)
 
 
@@ -140,8 +139,7 @@ def _draw_ratio(axes: Axes, result: Comparison) -> None:
         axes.set_ylim(0.0, 1.3 * min(float(finite.max()), top) or 1.0)
         if finite.max() > 1.3 * top:
             noted(axes, f"it goes up to {finite.max():.3g}")
-    axes.set_ylabel("ε = v/(rω)")
-    _over_time(axes, result)
+    _over_time(axes, result, "ε = v/(rω)")
     axes.legend(frameon=False, fontsize=8)
 
 
@@ -157,11 +155,9 @@ def _draw_errors(axes: Axes, result: Comparison, name: str, label: str) -> None:
     else:
         axes.text(0.5, 0.5, "none, or not in the file", ha="center", transform=axes.transAxes,
                   color=GREY)  # fmt: skip
-    axes.set_ylabel(label)
-    _over_time(axes, result)
+    _over_time(axes, result, label)
 
 
-def _over_time(axes: Axes, result: Comparison) -> None:
+def _over_time(axes: Axes, result: Comparison, label: str) -> None:
     axes.set_xlim(0.0, 1.15 * result.end_time)
-    axes.set_xlabel("time / s")
-    axes.grid(color="#e4e4e4", linewidth=0.6)
+    labelled(axes, "time / s", label)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from puck_tables.plot.base_outlines import outline_of, placed
-from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas
+from puck_tables.plot.style import BLUE, GREY, ORANGE, canvas, labelled
 from puck_tables.plot.titles import legend_below, titled
 from puck_tables.wrench.push import Push
 
@@ -27,8 +27,7 @@ def draw(run: Push) -> Figure:
     right.plot(run.time, run.speed, color=BLUE, label="speed / (m/s)")
     right.plot(run.time, run.puck.radius * run.spin, color=ORANGE,
                label="rω / (m/s), r of the farthest point")  # fmt: skip
-    right.set_xlabel("time / s")
-    right.grid(color="#e4e4e4", linewidth=0.6)
+    labelled(right, "time / s", "")
     legend_below(right)
     force = np.hypot(run.push_x, run.push_y)
     titled(figure, f"{run.contact[0]} at first; force {force.min():.3g} to {force.max():.3g} N")

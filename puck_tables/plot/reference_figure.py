@@ -56,13 +56,10 @@ def draw(answer: Answer) -> Figure:
         panels[3].plot(whole.time, turn, style, color=ORANGE, label=f"torque / r / N{name}")
     if answer.limit_epsilon is not None:
         panels[2].axhline(answer.limit_epsilon, color=GREY, linewidth=0.8, label="its limit")
-    panels[1].set_ylabel("v, rω / m/s")
-    panels[2].set_ylabel("ε = v/(rω)")
-    panels[3].set_ylabel("on the floor / N")
     _tame(panels[2], whole.epsilon)
-    for panel in panels[1:]:
-        panel.set_xlabel("time / s")
-        panel.grid(color="#e4e4e4", linewidth=0.6)
+    words = ("v, rω / m/s", "ε = v/(rω)", "on the floor / N")
+    for panel, what in zip(panels[1:], words, strict=True):
+        labelled(panel, "time / s", what)
         panel.legend(frameon=False, fontsize=8)
     titled(figure, f"{answer.case.label}: {answer.case.title}")
     return figure

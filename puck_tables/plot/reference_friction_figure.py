@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas
+from puck_tables.plot.style import BLUE, GREEN, ORANGE, canvas, labelled
 from puck_tables.plot.titles import noted, titled
 from puck_tables.reference.floor_reaction import FloorFriction
 
@@ -35,8 +35,7 @@ def draw_on(axes: Axes, friction: FloorFriction) -> None:
         axes.plot(friction.epsilon[shown], row, color=colour, label=label,
                   marker="." if shown.size < 30 else "")  # fmt: skip
     axes.set_xscale("log")
-    axes.set_xlabel("ε = v/(rω)")
+    labelled(axes, "ε = v/(rω)", "")
     if shown.size < order.size:  # the axis is logarithmic
         noted(axes, f"{order.size - shown.size} of {order.size} without slide or without spin")
-    axes.grid(color="#e4e4e4", linewidth=0.6)
     axes.legend(frameon=False)

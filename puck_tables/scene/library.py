@@ -18,7 +18,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.fields import Kind, in_tables, specs
-from puck_tables._core.safe_read import read_whole
+from puck_tables._core.safe_read import content_of
 from puck_tables._core.safe_write import as_utf8
 from puck_tables._core.wording import meant
 from puck_tables.errors import InputError
@@ -110,12 +110,10 @@ def read_scene(path: str | Path) -> dict[str, Any]:
 
     Raises InputError if it cannot be read or is not TOML.
     """
+    content = content_of(path, MAX_FILE)
     try:
-        content = read_whole(path, MAX_FILE)
         wide = content.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # as '>' of PowerShell writes it
         tables = toml_in(content.decode("utf-16" if wide else "utf-8-sig"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{path} is not text in UTF-8: see its byte {error.start}") from None
     except tomllib.TOMLDecodeError as error:
@@ -152,10 +150,7 @@ def files_of(scene: SceneSpec) -> dict[str, str]:
     """
     texts = {}
     for path, file in _named_in(scene, ""):
-        try:
-            text = read_whole(file, MAX_NAMED).decode("utf-8-sig", "replace")
-        except OSError as error:
-            raise InputError(f"cannot read {file}: {error.strerror or error}") from None
+        text = content_of(file, MAX_NAMED).decode("utf-8-sig", "replace")
         texts[path] = text.replace("\0", "\ufffd")
     return texts
 

@@ -15,9 +15,9 @@ from puck_tables.io.columns import COLUMNS, Dataset, variable
 from puck_tables.result import Result
 from puck_tables.scene.entries import tables_of
 from puck_tables.scene.library import files_of, scene_texts
-from puck_tables.scene.run import Run, column_of
+from puck_tables.scene.run import Run, column_of, number_of
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.named_pucks import called, pucks_of, start_of
+from puck_tables.world.named_pucks import names_of, pucks_of, start_of, with_launch
 from puck_tables.world.simulate import simulate
 from puck_tables.world.targets import Odds, Target, odds_of
 
@@ -73,10 +73,8 @@ class BoardAim(Result):
     @property
     def start(self) -> tuple[float, float, float]:
         """Where the striker starts, m, and its radius, m."""
-        for number, puck in enumerate(pucks_of(self.scene)):
-            if called(puck, number) == self.striker:
-                return *start_of(puck), puck.radius
-        raise InputError(f"no puck {self.striker!r}")
+        puck = pucks_of(self.scene)[number_of(self.striker, names_of(self.scene))]
+        return *start_of(puck), puck.radius
 
     def board(self, number: int = 0) -> SceneSpec:
         """The scene with a launch that was found.
@@ -89,7 +87,8 @@ class BoardAim(Result):
         if not -len(self) <= number < len(self):
             raise InputError(f"no launch {number}: {self.answer}")
         names = ("launch_vx", "launch_vy", "launch_spin")
-        return _sent(self.scene, self.striker, *(float(self.columns[n][number]) for n in names))
+        launch = np.array([self.columns[name][number] for name in names])
+        return with_launch(self.scene, number_of(self.striker, names_of(self.scene)), launch)
 
     def run(self, number: int = 0) -> Run:
         """The run of the whole board with a launch that was found.
@@ -135,7 +134,7 @@ class BoardAim(Result):
         (0.5, 0.58)
         """
         self.board(number)  # which refuses a number of none
-        names = [called(puck, n) for n, puck in enumerate(pucks_of(self.scene))]
+        names = names_of(self.scene)
         who = names.index(self.striker), names.index(self.puck)
         wanted = Target(*who, -1, self.target, -1 if self.pocket is None else self.pocket)
         columns = ("launch_heading", "launch_speed", "launch_spin")
@@ -181,8 +180,7 @@ def aimed(
     ``margins`` (n, 2): how their ends change, or the widths of their intervals; ``answer``: what to
     say where there are none.
     """
-    pucks = pucks_of(scene)
-    names = tuple(called(puck, number) for number, puck in enumerate(pucks))
+    names = names_of(scene)
     starts = np.empty((0, 3)) if starts is None else starts
     margins = np.empty((0, 2)) if margins is None else margins
     pocketing = wanted.pocket >= 0
@@ -198,7 +196,7 @@ def aimed(
     for n in order.tolist():
         if len(kept) == count:
             break
-        run = simulate(_sent(scene, names[wanted.striker], *starts[n].tolist()), [0.0])
+        run = simulate(with_launch(scene, wanted.striker, starts[n]), [0.0])
         miss = _miss(run, wanted)
         if miss is None:
             continue
@@ -225,14 +223,6 @@ def aimed(
         wanted.pocket if pocketing else None, columns, tuple(sequences),
         answer.format(puck=names[wanted.puck]), limit, files_of(scene),
     )  # fmt: skip
-
-
-def _sent(scene: SceneSpec, striker: str, vx: float, vy: float, spin: float) -> SceneSpec:
-    """The board with a launch of the striker."""
-    pucks = pucks_of(scene)
-    number = next(n for n, puck in enumerate(pucks) if called(puck, n) == striker)
-    path = f"puck[{number}].launch" if scene.pucks else "launch"
-    return scene.at({f"{path}.velocity": [vx, vy], f"{path}.spin": spin})
 
 
 def _miss(run: Run, wanted: Target) -> float | None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.world.bulk import own_engine
-from puck_tables.world.engine_state import Engine, Whole
+from puck_tables.world.engine_state import REPORTED, Engine, Whole
 from puck_tables.world.group_paths import Workplace, workplace_for
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.passings import COLUMNS
@@ -22,7 +22,7 @@ LET_GO, LED, ALL_PUT = -1, -2, -3
 WAITS, TO_DO, ALONE, LACKS_PIECES = -1, -2, -3, -4
 ROWS = 2048  # of events and segments of a board in one call; beyond them it is played alone
 _PUSHES = 2  # of all its discs at once, in one call; so are more
-REPORT_COLUMNS = 12  # of an event that is told: its board, then as an Event has them
+REPORT_COLUMNS = 1 + REPORTED  # of an event that is told: its board, then those
 _PASSINGS = 64  # passings of lines in one call
 _NUMBERS = ("scale", "discs", "segments", "next_time")
 _WHOLE = ("kinds", "group", "next_partner", "counts", "drives", "hangs", "held")

@@ -42,7 +42,7 @@ from puck_tables.world.floors import velocities_under
 from puck_tables.world.lasting import LEADS_ON, NEVER_ENDS, ROUND
 from puck_tables.world.layout import RADIUS
 from puck_tables.world.ledger import NAMES, energies_of, energy_scale, kinetic_of, ledgers_of
-from puck_tables.world.named_pucks import called, pucks_of
+from puck_tables.world.named_pucks import names_of, pucks_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import prepared, with_law_up_to
 from puck_tables.world.record import reactions
@@ -85,7 +85,7 @@ class BoardCase:
     @staticmethod
     def names(scene: SceneSpec) -> tuple[str, ...]:
         """What its pucks are called; of a scene of one puck none, it has no dimension of them."""
-        return tuple(called(puck, number) for number, puck in enumerate(scene.pucks))
+        return names_of(scene) if scene.pucks else ()
 
     @staticmethod
     def columns(scene: SceneSpec) -> dict[str, tuple[int, ...]]:
@@ -109,14 +109,13 @@ class BoardCase:
             if (values[:, 3:] != values[0, 3:]).any():
                 return ()
             paths = launch_paths(path)[:3]
-        pucks, rows = pucks_of(scene), []
+        pucks = pucks_of(scene)
         for one in paths:
             match = _LAUNCH.fullmatch(one)
             puck = pucks[int(match[1] or 0)] if match is not None else None
             if puck is None or puck.launch.time > 0.0 or puck.path or puck.constraint:
                 return ()
-            rows.append(one)
-        return tuple(rows)
+        return paths
 
     @staticmethod
     def advice(scene: SceneSpec, code: int) -> str:

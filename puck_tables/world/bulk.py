@@ -6,7 +6,7 @@ What is kept of a disc is what it went through: which impacts led to where it en
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from puck_tables.world.engine_state import (
     WHO,
     Engine,
     Whole,
+    copy_of,
 )
 from puck_tables.world.floor_under import least_slip, moves_along
 from puck_tables.world.lasting import GOES_ON, at_rest_below, limits_of, next_target
@@ -235,15 +236,12 @@ def follow_all(
     mine = own_engine(engine, rows)
 
     def work(start: int, stop: int) -> None:
-        part = Ends(
-            ends.states[start:stop], ends.in_play[start:stop], ends.carried[start:stop],
-            ends.time[start:stop], ends.impacts[start:stop], ends.how[start:stop],
-            ends.sequences[start:stop], ends.ledgers[start:stop],
-        )  # fmt: skip
+        columns: Any = [one[start:stop] for one in ends]
         _follow_all(
             mine, engine.discs, engine.kinds, engine.hangs, engine.segments, first, discs,
             launches[start:stop], scales[start:stop], until, limits[start:stop], prescribed,
-            np.array(watch), room, np.empty(1 + len(mine.history) + count), part,
+            np.array(watch), room, np.empty(1 + len(mine.history) + count),
+            Ends(*columns),
         )  # fmt: skip
 
     in_slices(work, runs)
@@ -279,14 +277,8 @@ def own_engine(engine: Engine, rows: int, more: int = 0, pushed: int = 0) -> Eng
     """
     steps = pushed + (rows + LONGEST if engine.floors[:, 2].any() else 0)
     pieces = np.zeros((more + steps, PIECE_COLUMNS))
-    return engine._replace(
-        regions=engine.regions._replace(floor_map=engine.regions.floor_map.copy()),
-        discs=engine.discs.copy(), hangs=engine.hangs.copy(), clock=np.zeros(1),
-        kinds=engine.kinds.copy(),
-        segments=engine.segments.copy(), group=engine.group.copy(), held=engine.held.copy(),
-        next_time=engine.next_time.copy(), next_partner=engine.next_partner.copy(),
-        pieces=np.vstack([engine.pieces, pieces]), work_rows=np.zeros((steps, WORK_COLUMNS)),
-        events=np.zeros((rows, engine.events.shape[1])),
-        history=np.zeros((rows, engine.history.shape[1])), counts=engine.counts.copy(),
-        scale=engine.scale.copy(),
+    return copy_of(engine)._replace(
+        clock=np.zeros(1), pieces=np.vstack([engine.pieces, pieces]),
+        work_rows=np.zeros((steps, WORK_COLUMNS)), events=np.zeros((rows, engine.events.shape[1])),
+        history=np.zeros((rows, engine.history.shape[1])),
     )  # fmt: skip

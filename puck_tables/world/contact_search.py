@@ -22,7 +22,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner
 from puck_tables.scene.forces import farthest, per_speed
 from puck_tables.scene.friction import VX, VY, X, Y
-from puck_tables.world.engine_state import N_HELD, N_LOOKS, Engine
+from puck_tables.world.engine_state import N_HELD, N_LOOKS, Engine, Whole
 from puck_tables.world.layout import (
     ARC,
     CORNER,
@@ -180,8 +180,14 @@ def are_held(engine: Engine, i: int, j: int) -> bool:
     """Whether the contact of disc i with partner j is one of a group that pushes."""
     if engine.group[i] == 0 or (j >= 0 and engine.group[j] != engine.group[i]):
         return False
-    for n in range(engine.counts[N_HELD]):
-        a, b = engine.held[n, 0], engine.held[n, 1]
+    return is_among(engine.held, engine.counts[N_HELD], i, j)
+
+
+@inlined
+def is_among(contacts: Whole, count: int, i: int, j: int) -> bool:
+    """Whether the contact of disc i with partner j is among the first ``count``, either way."""
+    for n in range(count):
+        a, b = contacts[n, 0], contacts[n, 1]
         if (a == i and b == j) or (a == j and b == i):
             return True
     return False

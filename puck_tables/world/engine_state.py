@@ -26,14 +26,15 @@ EVENTS = (
     "impact", "contact", "part", "pocket", "edge", "rest", "launch", "entry", "exit", "overhang",
     "line", "tip", "placed", "removed", "added", "force",
 )  # fmt: skip
-# columns of an event: what, disc, partner, place of the contact, normal from the disc to its
-# partner, approach and slip before, normal and tangential impulse, energy lost, what launches and
-# driven bodies gave (of who leaves play: what went along), the work of constraints, in SI units
+# columns of an event, first those told, as :class:`puck_tables.scene.run.Event` has them: what,
+# disc, partner, place of the contact, approach and slip before, normal and tangential impulse,
+# energy lost; then the normal from the disc to its partner, what launches and driven bodies gave
+# (of who leaves play: what went along), the work of constraints, in SI units
 (
-    TIME, WHAT, WHO, PARTNER, AT_X, AT_Y, NORMAL_X, NORMAL_Y, APPROACH, SLIDE, PUSH, RUB, LOST, GOT,
+    TIME, WHAT, WHO, PARTNER, AT_X, AT_Y, APPROACH, SLIDE, PUSH, RUB, LOST, NORMAL_X, NORMAL_Y, GOT,
     LED,
 ) = range(15)  # fmt: skip
-EVENT_COLUMNS = 15
+REPORTED, EVENT_COLUMNS = LOST + 1, 15
 
 # why a run does not go on, whatever of it comes first, and where its ledger is wrong for the same
 TOGETHER = (

@@ -14,7 +14,7 @@ from puck_tables.io.columns import Dataset, Variable
 from puck_tables.scene.entries import is_batch, launch_paths
 from puck_tables.scene.library import files_of, plain_name
 from puck_tables.scene.run import LAST_END
-from puck_tables.world.scene_ends import SceneEnds, axes_of, number_along
+from puck_tables.world.scene_ends import SceneEnds, axes_of, number_along, numbers_of
 from puck_tables.world.simulate import simulate
 
 CHECKED = 8  # runs
@@ -60,14 +60,8 @@ class Map(SceneEnds):
         >>> scene.sweep().numbers(2)
         {'puck.friction': 0.2, 'launch.spin': 0.0}
         """
-        values_at: dict[str, float] = {}
-        place = np.unravel_index(run, self.end.shape)
-        for (path, values), i in zip(self.scene.ranges.items(), place, strict=True):
-            if is_batch(path):
-                values_at |= zip(launch_paths(path), values[i].tolist(), strict=True)
-            else:
-                values_at[path] = float(values[i])
-        return values_at
+        ranged = numbers_of(self.scene.ranges, np.array([run]))
+        return {path: float(values[0]) for path, values in ranged.items()}
 
     @cached_property
     def error_estimate(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.drive import rows_of
@@ -39,6 +40,11 @@ def called(puck: ScenePuck, number: int) -> str:
     return puck.name or f"puck {number}"
 
 
+def names_of(scene: SceneSpec) -> tuple[str, ...]:
+    """What all its pucks are called."""
+    return tuple(called(puck, number) for number, puck in enumerate(pucks_of(scene)))
+
+
 def who(scene: SceneSpec, number: int) -> str:
     """A puck of a scene in a sentence: the only one has no number.
 
@@ -55,3 +61,10 @@ def start_of(puck: ScenePuck) -> tuple[float, float]:
         rows = rows_of(puck.path)
         return float(rows[0, 1]), float(rows[0, 2])
     return puck.launch.position
+
+
+def with_launch(scene: SceneSpec, number: int, launch: FloatArray) -> SceneSpec:
+    """The scene with a launch vx, vy, spin (3,) of one of its pucks."""
+    path = f"puck[{number}].launch" if scene.pucks else "launch"
+    vx, vy, spin = launch.tolist()
+    return scene.at({f"{path}.velocity": [vx, vy], f"{path}.spin": spin})

@@ -27,7 +27,7 @@ from puck_tables.world.lasting import (
     next_target,
 )
 from puck_tables.world.layout import INV_MASS
-from puck_tables.world.named_pucks import called, pucks_of
+from puck_tables.world.named_pucks import names_of, pucks_of
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.passings import Passings
 from puck_tables.world.playing import Playing
@@ -66,8 +66,7 @@ class Running(Playing):
     def _named(self) -> None:
         """Who is where in the engine's order, and what they are called."""
         self._place = np.argsort(self._order)
-        pucks = pucks_of(self.scene)
-        self.names = tuple(called(puck, number) for number, puck in enumerate(pucks))
+        self.names = names_of(self.scene)
         self._obstacles = obstacle_names(self.scene)
 
     def __repr__(self) -> str:
@@ -140,9 +139,7 @@ class Running(Playing):
 
     def over(self, times: npt.ArrayLike) -> FloatArray:
         """States at times of the past, ascending, array (times, pucks, 6)."""
-        moments = np.atleast_1d(finite_array("times", times, "s"))
-        if moments.ndim != 1 or (np.diff(moments) < 0.0).any() or (moments < 0.0).any():
-            raise InputError("times must be a list of ascending numbers >= 0 s")
+        moments = ascending(times)
         if moments.size and moments[-1] > self.time:
             raise InputError(
                 f"times must not lie after now, {self.time:g} s: advance before, or use at"
@@ -261,9 +258,7 @@ class Running(Playing):
         count, lines = int(self._engine.counts[g.N_EVENTS]), self.scene.lines
         if first == count and passed == len(self._passings.rows):
             return []
-        rows = self._engine.events[first:count]
-        columns = [g.TIME, g.WHAT, g.WHO, g.PARTNER, g.AT_X, g.AT_Y, g.APPROACH, g.SLIDE, g.PUSH,
-                   g.RUB, g.LOST]  # fmt: skip
+        rows = self._engine.events[first:count, : g.REPORTED]
         events = [
             Event(
                 time,
@@ -272,7 +267,7 @@ class Running(Playing):
                 "floor" if what == g.TIPS else self._name(partner),
                 *numbers,
             )
-            for time, what, who, partner, *numbers in rows[:, columns].tolist()
+            for time, what, who, partner, *numbers in rows.tolist()
         ]
         events += [
             Event(time, g.EVENTS[int(what)], self._name(who), called_line(lines, int(k)), *numbers)
@@ -324,6 +319,14 @@ class Running(Playing):
                 "or strike it"
             )
         return i
+
+
+def ascending(times: npt.ArrayLike) -> FloatArray:
+    """When states are wanted, checked."""
+    moments = np.atleast_1d(finite_array("times", times, "s"))
+    if moments.ndim != 1 or (moments < 0.0).any() or (np.diff(moments) < 0.0).any():
+        raise InputError("times must be a list of ascending numbers >= 0 s")
+    return moments
 
 
 def span_of(duration: float) -> float:

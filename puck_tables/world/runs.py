@@ -22,14 +22,14 @@ from puck_tables.contact.laws import Law
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset
 from puck_tables.motion.puck_spec import PuckSpec
-from puck_tables.scene.entries import is_batch, launch_paths, tables_of
+from puck_tables.scene.entries import tables_of
 from puck_tables.scene.library import files_of, plain_name
 from puck_tables.scene.run import ENDS, LAST_END, REFUSED
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.board_case import BoardCase
 from puck_tables.world.map import Map
 from puck_tables.world.named_pucks import pucks_of
-from puck_tables.world.scene_ends import Sample, SceneEnds, axes_of
+from puck_tables.world.scene_ends import Sample, SceneEnds, axes_of, numbers_of
 
 FEWEST, MOST = 1 << 6, 1 << 13  # runs kept together in a store
 _COPIES = 4  # of the columns: as made, in their shape, and what follows from them
@@ -89,17 +89,13 @@ class Runs(Work):
     @property
     def identity(self) -> Mapping[str, Any]:
         """The scene, its ranges, and what stands in the files that it names."""
+        tables = self._whole["puck"] if self.scene.pucks else [self._whole["puck"]]
         pucks = [
             {**table, "pressure": _differences(puck)} if isinstance(puck.pressure, Law) else table
-            for puck, table in zip(pucks_of(self.scene), self._tables, strict=True)
+            for puck, table in zip(pucks_of(self.scene), tables, strict=True)
         ]
         ranges = list(self.scene.ranges.items())
         return {"scene": {**self._whole, "puck": pucks}, "axes": ranges, "files": self._read}
-
-    @property
-    def _tables(self) -> list[dict[str, Any]]:
-        pucks = self._whole["puck"]
-        return pucks if isinstance(pucks, list) else [pucks]
 
     def refuse_memory(self) -> None:
         """By its columns."""
@@ -107,14 +103,7 @@ class Runs(Work):
 
     def numbers(self, start: int, stop: int) -> dict[str, FloatArray]:
         """What differs between runs, by path, of some of them."""
-        places = np.unravel_index(np.arange(start, stop), self.shape)
-        result: dict[str, FloatArray] = {}
-        for (path, values), place in zip(self.scene.ranges.items(), places, strict=True):
-            if is_batch(path):
-                result |= zip(launch_paths(path), values[place].T, strict=True)
-            else:
-                result[path] = values[place]
-        return result
+        return numbers_of(self.scene.ranges, np.arange(start, stop))
 
     def along(self, run: int) -> dict[str, float]:
         """Where a run is along the axes."""

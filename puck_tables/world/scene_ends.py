@@ -15,10 +15,11 @@ from puck_tables.bulk.summary import Chance, Summary, chance_of, head
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset, Variable, derived, variable
 from puck_tables.result import Result
-from puck_tables.scene.entries import entry_at, is_batch
+from puck_tables.scene.entries import entry_at, is_batch, launch_paths
 from puck_tables.scene.library import plain_name, scene_texts
 from puck_tables.scene.run import ENDS, LAST_END, column_of, number_of
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.engine_state import Whole
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -138,6 +139,18 @@ def axes_of(scene: SceneSpec) -> dict[str, FloatArray]:
         path: np.arange(float(len(values))) if is_batch(path) else values
         for path, values in scene.ranges.items()
     }
+
+
+def numbers_of(ranges: Mapping[str, FloatArray], runs: Whole) -> dict[str, FloatArray]:
+    """The numbers that range, in runs (n,) counted from 0 with the last range fastest, by path."""
+    places = np.unravel_index(runs, [len(values) for values in ranges.values()])
+    result: dict[str, FloatArray] = {}
+    for (path, values), place in zip(ranges.items(), places, strict=True):
+        if is_batch(path):
+            result |= zip(launch_paths(path), values[place].T, strict=True)
+        else:
+            result[path] = values[place]
+    return result
 
 
 def spread_words(scene: SceneSpec, spreads: Mapping[str, Spread]) -> str:

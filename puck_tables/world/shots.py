@@ -16,7 +16,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import ContactError, PuckError
-from puck_tables.scene.acting import acting
 from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.map_of_floor import MANY
 from puck_tables.scene.scene_spec import SceneSpec
@@ -26,7 +25,8 @@ from puck_tables.world.bulk import LENGTH, OUTCOME, PASSES, PRINT, follow_all, t
 from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.floor_under import SURE, law_goes_to
 from puck_tables.world.floors import may_be_mixed, velocities_under
-from puck_tables.world.named_pucks import pucks_of, start_of
+from puck_tables.world.named_pucks import pucks_of, start_of, with_launch
+from puck_tables.world.plan import acting
 from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared, with_law_up_to
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
@@ -165,10 +165,8 @@ class Landings(NamedTuple):
 
     def at(self, which: npt.NDArray[np.int64] | npt.NDArray[np.bool_]) -> Landings:
         """Some of them."""
-        return Landings(
-            self.x[which], self.y[which], self.prints[which], self.lengths[which],
-            self.outcomes[which], self.passes[which],
-        )  # fmt: skip
+        columns: Any = [one[which] for one in self]
+        return Landings(*columns)
 
     def before(self, more: Landings) -> Landings:
         """These, then others."""
@@ -194,7 +192,6 @@ class Shots:
         velocities: Callable[[FloatArray], FloatArray], fastest: float, patient: bool = False,
     ) -> None:  # fmt: skip
         self.scene, self.striker, self.velocities = scene, striker, velocities
-        self._path = f"puck[{striker}].launch" if scene.pucks else "launch"
         self.until = math.inf if scene.time is None else scene.time
         start = _finely(scene)
         self._first, place = start.states, np.argsort(start.order)
@@ -256,8 +253,7 @@ class Shots:
 
     def board(self, start: FloatArray) -> SceneSpec:
         """The board with a launch vx, vy, spin (3,)."""
-        vx, vy, spin = start.tolist()
-        return self.scene.at({f"{self._path}.velocity": [vx, vy], f"{self._path}.spin": spin})
+        return with_launch(self.scene, self.striker, start)
 
     def _alone(
         self, start: FloatArray, sequence: Whole, states: FloatArray, how: Whole, run: int

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from puck_tables._core.arrays import FloatArray, finite_array
-from puck_tables.errors import InputError, PuckError
+from puck_tables._core.arrays import FloatArray
+from puck_tables.errors import PuckError
 from puck_tables.scene.friction import THETA, VX, X, Y
 from puck_tables.scene.ingredients import FREE
 from puck_tables.scene.library import files_of
@@ -44,6 +44,7 @@ from puck_tables.world.named_pucks import pucks_of
 from puck_tables.world.plan import plan_of
 from puck_tables.world.prepare import Start, prepared
 from puck_tables.world.record import floor_under, reactions, rests_of, slips_over
+from puck_tables.world.running import ascending
 from puck_tables.world.world import World
 
 # of check runs: so many times the error of a step, and to which side launches are off
@@ -131,7 +132,7 @@ def _otherwise(start: Start, coarser: float, share: float, friction: float) -> S
 
 def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
     """A run of a scene, as :meth:`puck_tables.Scene.simulate` has it."""
-    files, moments = files_of(scene), None if times is None else _checked(times)
+    files, moments = files_of(scene), None if times is None else ascending(times)
     world, end, end_time, error = _close_enough(scene, moments)
     if moments is None:
         moments = np.linspace(0.0, end_time, int(scene.frames))
@@ -164,14 +165,6 @@ def simulate(scene: SceneSpec, times: npt.ArrayLike | None = None) -> Run:
         columns={name: row[:-1] for name, row in columns.items()},
         files=files,
     )
-
-
-def _checked(times: npt.ArrayLike) -> FloatArray:
-    """When states are to be saved."""
-    moments = np.atleast_1d(finite_array("times", times, "s"))
-    if moments.ndim != 1 or (moments < 0.0).any() or (np.diff(moments) < 0.0).any():
-        raise InputError("times must be a list of ascending numbers >= 0 s")
-    return moments
 
 
 def run_on(world: World, moments: FloatArray | None) -> tuple[str, float]:

@@ -28,11 +28,7 @@ from puck_tables.world.bench import (
 from puck_tables.world.by_hand import lead
 from puck_tables.world.engine import NOBODY, THOSE_LEFT, advance
 from puck_tables.world.engine_state import (
-    APPROACH,
-    AT_X,
-    AT_Y,
     LAUNCH_TIME,
-    LOST,
     N_AT_ONCE,
     N_CONTACTS,
     N_EVENTS,
@@ -40,15 +36,9 @@ from puck_tables.world.engine_state import (
     N_LAUNCHES,
     N_PIECES,
     N_WORK_ROWS,
-    PARTNER,
     PATH_ENDS,
     PLACED,
-    PUSH,
-    RUB,
-    SLIDE,
-    TIME,
-    WHAT,
-    WHO,
+    REPORTED,
     Engine,
     Whole,
 )
@@ -97,8 +87,7 @@ def _take(store: Slots, slot: int, time: float, bench: Bench) -> None:
         bench.passed[i] = count + i
     bench.passed[count] = 2 * count
     for n in range(engine.counts[N_EVENTS]):
-        event, kept = engine.events[n], bench.tail[n]
-        event[TIME], event[WHAT], event[WHO], event[PARTNER] = kept[0], kept[1], kept[2], kept[3]
+        write_over(engine.events[n], bench.tail[n])
 
 
 @kernel
@@ -183,8 +172,8 @@ def _put_away(engine: Engine, bench: Bench, store: Slots, slot: int) -> bool:
     events = engine.counts[N_EVENTS]
     kept = min(events, MOST_BACK)
     for n in range(kept):
-        event, row = engine.events[events - kept + n], bench.tail[n]
-        row[0], row[1], row[2], row[3] = event[TIME], event[WHAT], event[WHO], event[PARTNER]
+        row = bench.tail[n]
+        write_over(row, engine.events[events - kept + n, : row.size])
     engine.counts[N_EVENTS], engine.counts[N_HISTORY] = kept, 2 * count
     engine.counts[N_WORK_ROWS] = 0
     store.due[slot] = _next_due(engine, bench.seen)
@@ -277,10 +266,8 @@ def tell(board: int, engine: Engine, first: int, bench: Bench, passed: int, out:
     """Write down what happened on a board from an event on, and what passed; how many rows."""
     used = 0
     for n in range(first, engine.counts[N_EVENTS]):
-        event, row = engine.events[n], out[used]
-        row[0], row[1], row[2], row[3] = board, event[TIME], event[WHAT], event[WHO]
-        row[4], row[5], row[6], row[7] = event[PARTNER], event[AT_X], event[AT_Y], event[APPROACH]
-        row[8], row[9], row[10], row[11] = event[SLIDE], event[PUSH], event[RUB], event[LOST]
+        out[used, 0] = board
+        write_over(out[used, 1:], engine.events[n, :REPORTED])
         used += 1
     for n in range(passed):
         from_event, row = bench.reports[n], out[used]

@@ -20,7 +20,7 @@ from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.run import number_of
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.agreement import disagreements, has_closed_forms, refuse_endless
-from puck_tables.world.named_pucks import called, pucks_of, start_of
+from puck_tables.world.named_pucks import called, names_of, pucks_of, start_of
 from puck_tables.world.obstacles import obstacle_names
 from puck_tables.world.placement import TOUCH, obstructing
 from puck_tables.world.worlds import Worlds
@@ -61,7 +61,7 @@ def target_of(
     if any(scene.floor.velocity) or scene.floor.turning != 0.0:
         raise InputError("aim is for boards on which pucks come to rest, not for a moving floor")
     pucks = pucks_of(scene)
-    names = tuple(called(puck, number) for number, puck in enumerate(pucks))
+    names = names_of(scene)
     sent = _striker(pucks, names, striker)
     aimed = _puck(pucks, names, puck, sent)
     through = -1

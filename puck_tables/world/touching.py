@@ -15,7 +15,7 @@ from puck_tables._core.arrays import FloatArray
 from puck_tables.kernels.compile import inlined, inner, patience
 from puck_tables.scene.friction import VX, VY, X, Y
 from puck_tables.world.contact_row import ACTS, HOPS, NX, NY, E, approach, opening, prepare_contact
-from puck_tables.world.contact_search import HARDLY
+from puck_tables.world.contact_search import HARDLY, is_among
 from puck_tables.world.engine_state import IMPACT, N_EVENTS, PARTNER, TIME, WHAT, WHO, Engine, Whole
 from puck_tables.world.floor_under import is_over_belts, outruns_law, over_floor, slips
 from puck_tables.world.layout import (
@@ -37,16 +37,6 @@ from puck_tables.world.segment import GONE, PLACE_X, PLACE_Y, STILL, drifts
 from puck_tables.world.segment_starts import CURRENT, LOOKED_AT, STALE, Room, locate
 
 BLUR = 1e-15  # of the time since the start, at full speed: another
-
-
-@inlined
-def _contact_of(room: Room, count: int, i: int, j: int) -> bool:
-    """Whether a contact is among those found."""
-    for n in range(count):
-        a, b = room.contacts[n, 0], room.contacts[n, 1]
-        if (a == i and b == j) or (a == j and b == i):
-            return True
-    return False
 
 
 @inner
@@ -96,7 +86,7 @@ def find_touching(engine: Engine, t: float, room: Room) -> int:
                 dy = room.states[j, Y] - room.states[i, Y]
                 if abs(dx) > 1.01 * reach or math.hypot(dx, dy) - reach > near:
                     continue
-                if not _contact_of(room, count, i, j):
+                if not is_among(room.contacts, count, i, j):
                     if count == room.contacts.shape[0]:
                         return -1
                     room.contacts[count, 0], room.contacts[count, 1] = min(i, j), max(i, j)

@@ -179,8 +179,12 @@ def cheapest(method: str, accuracy: float, end: float) -> Setting:
     return min(good, key=lambda setting: setting.calls)
 
 
-def note(benchmark: Any, setting: Setting) -> None:
-    benchmark.extra_info.update(rtol=setting.rtol, atol=setting.atol, calls=setting.calls)
+def time_rival(measure: Any, method: str, setting: Setting, end: float) -> None:
+    measure.benchmark.extra_info.update(rtol=setting.rtol, atol=setting.atol, calls=setting.calls)
+    measure(
+        f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
+        lambda: over_time(method, setting, end), unit="trajectory", error=setting.error,
+    )  # fmt: skip
 
 
 # --- one stop -------------------------------------------------------------------------------------
@@ -248,13 +252,7 @@ def test_stop_closed_forms(measure: Any, launches: FloatArray) -> None:
 @ONE_STOP
 @pytest.mark.parametrize("method", ["RK45", "DOP853", "LSODA"])
 def test_stop_rival_scipy(measure: Any, method: str) -> None:
-    end = 1e-8
-    setting = cheapest(method, ACCURACY, end)
-    note(measure.benchmark, setting)
-    measure(
-        f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
-        lambda: over_time(method, setting, end), unit="trajectory", error=setting.error,
-    )  # fmt: skip
+    time_rival(measure, method, cheapest(method, ACCURACY, 1e-8), 1e-8)
 
 
 @ONE_STOP
@@ -311,47 +309,28 @@ def test_tight_simulate(measure: Any, table: ResultantTable, source: str) -> Non
 
 
 @TIGHT
-def test_tight_rival_scipy(measure: Any) -> None:
-    end, setting = 1e-12, Setting(1e-11, 1e-13)
-    setting = tried("DOP853", setting, end)
-    note(measure.benchmark, setting)
-    measure(
-        "rival: scipy DOP853 over time, rtol 1e-11", lambda: over_time("DOP853", setting, end),
-        unit="trajectory", error=setting.error,
-    )  # fmt: skip
-
-
-@TIGHT
-@pytest.mark.parametrize("method", ["DOP853", "LSODA"])
-def test_tight_rival_scipy_cheapest(measure: Any, method: str) -> None:
+@pytest.mark.parametrize("method", ["plain", "DOP853", "LSODA"])
+def test_tight_rival_scipy(measure: Any, method: str) -> None:
+    """DOP853 as anybody would ask for it, and at the cheapest tolerances that do."""
     end = 1e-12
-    setting = cheapest(method, TIGHT_ACCURACY, end)
-    note(measure.benchmark, setting)
-    measure(
-        f"rival: scipy {method} over time, rtol {setting.rtol:.0e}",
-        lambda: over_time(method, setting, end), unit="trajectory", error=setting.error,
-    )  # fmt: skip
+    if method == "plain":
+        time_rival(measure, "DOP853", tried("DOP853", Setting(1e-11, 1e-13), end), end)
+    else:
+        time_rival(measure, method, cheapest(method, TIGHT_ACCURACY, end), end)
 
 
 # --- the command line -----------------------------------------------------------------------------
 
-SIMULATE = ["simulate", "--v0", "1,0", "--w0", "5"]
-SCIPY = "import numpy, scipy.integrate"
+PUCK_COMMAND = shutil.which("puck", path=sysconfig.get_path("scripts"))
+SIMULATE = [str(PUCK_COMMAND), "simulate", "--v0", "1,0", "--w0", "5"]
+SCIPY = [sys.executable, "-c", "import numpy, scipy.integrate"]
 
 
 @pytest.fixture(scope="module")
-def puck() -> str:
-    found = shutil.which("puck", path=sysconfig.get_path("scripts"))
-    if found is None:
-        pytest.skip("the command puck is not installed beside this Python")
-    return found
-
-
-@pytest.fixture(scope="module")
-def bytecode(puck: str, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def bytecode(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the bytecode of everything that is imported: only kernels are ever compiled."""
     folder = tmp_path_factory.mktemp("bytecode")
-    for command in ([puck, *SIMULATE], [sys.executable, "-c", SCIPY]):
+    for command in (SIMULATE, SCIPY):
         start(command, folder, tmp_path_factory.mktemp("kernels"))
     return folder
 
@@ -363,51 +342,27 @@ def start(command: list[str], bytecode: Path, kernels: Path) -> None:
     subprocess.run(command, env=environment, check=True, capture_output=True)
 
 
-class TimeStarts:
-    """Times a command in a process of its own, with fresh kernel caches or one warm one."""
-
-    def __init__(self, measure: Any, bytecode: Path, factory: pytest.TempPathFactory) -> None:
-        self.measure = measure
-        self.bytecode = bytecode
-        self.factory = factory
-
-    def __call__(self, name: str, command: list[str], fresh: bool, rounds: int) -> None:
-        warm = self.factory.mktemp("kernels")
-        if not fresh:
-            start(command, self.bytecode, warm)
-
-        def arguments() -> tuple[tuple[Any, ...], dict[str, Any]]:
-            kernels = self.factory.mktemp("kernels") if fresh else warm
-            return (command, self.bytecode, kernels), {}
-
-        self.measure.benchmark.pedantic(start, setup=arguments, rounds=rounds, iterations=1)
-        self.measure.book(name, 1, "start")
-
-
-@pytest.fixture
-def time_starts(
-    measure: Any, bytecode: Path, tmp_path_factory: pytest.TempPathFactory
-) -> TimeStarts:
-    return TimeStarts(measure, bytecode, tmp_path_factory)
-
-
 @START
-def test_start_later(time_starts: TimeStarts, puck: str) -> None:
-    time_starts("puck simulate, later", [puck, *SIMULATE], fresh=False, rounds=3)
+@pytest.mark.skipif(PUCK_COMMAND is None, reason="the command puck is not beside this Python")
+@pytest.mark.parametrize(
+    ("name", "command"),
+    [
+        ("puck simulate, later", SIMULATE), ("puck simulate, first", SIMULATE),
+        ("puck --version", [SIMULATE[0], "--version"]),
+        ("rival: python -c 'pass'", [sys.executable, "-c", "pass"]),
+        (f"rival: python -c '{SCIPY[2]}'", SCIPY),
+    ],
+)  # fmt: skip
+def test_start(
+    measure: Any, bytecode: Path, tmp_path_factory: Any, name: str, command: list[str]
+) -> None:  # fmt: skip
+    """A process of its own, with one warm cache of kernels, or at first with a fresh one."""
+    warm, first = tmp_path_factory.mktemp("kernels"), name.endswith("first")
+    if not first:
+        start(command, bytecode, warm)
 
+    def arguments() -> tuple[tuple[Any, ...], dict[str, Any]]:
+        return (command, bytecode, tmp_path_factory.mktemp("kernels") if first else warm), {}
 
-@START
-def test_start_first(time_starts: TimeStarts, puck: str) -> None:
-    time_starts("puck simulate, first", [puck, *SIMULATE], fresh=True, rounds=2)
-
-
-@START
-def test_start_version(time_starts: TimeStarts, puck: str) -> None:
-    time_starts("puck --version", [puck, "--version"], fresh=False, rounds=3)
-
-
-@START
-@pytest.mark.parametrize("statement", ["pass", SCIPY], ids=["python", "scipy"])
-def test_start_rival_python(time_starts: TimeStarts, statement: str) -> None:
-    command = [sys.executable, "-c", statement]
-    time_starts(f"rival: python -c '{statement}'", command, fresh=False, rounds=3)
+    measure.benchmark.pedantic(start, setup=arguments, rounds=2 if first else 3, iterations=1)
+    measure.book(name, 1, "start")

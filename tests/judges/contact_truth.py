@@ -219,7 +219,6 @@ def moments(law, g):
     return s
 
 
-@njit(cache=True)
 def resultants(law, delta, phi):
     """∫σ e_x, ∫σ e_y, ∫σ r × e for f N = r = 1, the slip along x, 0 ≤ φ ≤ π/2; and the misfit."""
     cosine, sine = math.cos(phi), math.sin(phi)

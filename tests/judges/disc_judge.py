@@ -1,4 +1,4 @@
-"""A flat disc under friction over the slip speed, on a floor that slopes or moves, with drag.
+"""A flat disc under friction over the slip speed, on a floor that slopes or moves, with drags.
 
 Friction is summed over circles about the instantaneous centre of rotation, at 200 Gauss nodes; the
 motion is integrated by scipy until the slip is ``until``, and then goes with the floor.
@@ -39,16 +39,19 @@ def friction(law: Law, v: float, rim: float) -> tuple[float, float]:
 def slid(
     law: Law, radius: float, velocity: tuple[float, float], spin: float, times: np.ndarray, *,
     push: tuple[float, float] = (0.0, 0.0), belt: tuple[float, float] = (0.0, 0.0),
-    drag: float = 0.0, until: float = 1e-4,
+    drag: float = 0.0, air: float = 0.0, spin_drag: float = 0.0, until: float = 1e-4,
 ) -> np.ndarray:  # fmt: skip
-    """x, y, angle (3, n) at times from 0 s on; ``push`` m/s², ``belt`` m/s, ``drag`` 1/s."""
+    """x, y, angle (3, n) at times from 0 s on.
+
+    ``push`` m/s², ``belt`` m/s, ``drag`` 1/s of speed and spin, ``air`` 1/m, ``spin_drag`` 1/s.
+    """
 
     def rates(_: float, z: np.ndarray) -> list[float]:
         ahead, aside = z[3] - belt[0], z[4] - belt[1]
         v = math.hypot(ahead, aside)
         force, torque = friction(law, v, radius * abs(z[5]))
-        braked = G * force / max(v, 1e-300) + drag
-        turned = -2.0 * G * torque / radius * math.copysign(1.0, z[5]) - drag * z[5]
+        braked = G * force / max(v, 1e-300) + drag + air * v
+        turned = -2.0 * G * torque / radius * math.copysign(1.0, z[5]) - (drag + spin_drag) * z[5]
         return [*z[3:], push[0] - braked * ahead, push[1] - braked * aside, turned]
 
     def rests(_: float, z: np.ndarray) -> float:

@@ -1,18 +1,17 @@
 """Films that are drawn: pucks, launches, cameras, floors of many kinds, and what is true of them.
 
 Under dry friction of one coefficient motions are those of ``film_judge``, with air, a slope or a
-push; other floors, and drag, are summed over the elements of a flat base.
+push; on other floors, and with drag, those of ``disc_judge``.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import film_judge
 import numpy as np
-from scipy.integrate import solve_ivp
+from disc_judge import Law, slid
 
 import puck_tables as pt
 
@@ -101,7 +100,7 @@ def drawn(kind: str, seed: int) -> Drawn:
     if law is None:
         true = film_judge.path(velocity, spin, decel, delta, radius, times, besides=besides)
     else:
-        true = summed(velocity, spin, law, radius, times)
+        true = slid(law, radius, velocity, spin, times)
         some = law(np.linspace(0.0, speed + radius * abs(spin), 99))
         acts = float(some.min()), float(some.max())
     if kind == "hand":  # it pushes with a steady force until it lets go
@@ -142,38 +141,6 @@ def pushing(
     angle, turned = rng.uniform(0.0, 6.28), rng.choice([0.0, rng.uniform(-1.0, 1.0)])
     force = gain * np.array([math.cos(angle), math.sin(angle), turned / radius])
     return lambda t, v, w: force * float(since <= t <= until)
-
-
-Law = Callable[[np.ndarray], np.ndarray]
-
-
-def summed(
-    velocity: tuple[float, float], spin: float, law: Law, radius: float, times: np.ndarray
-) -> np.ndarray:
-    """x, y and angle (3, n) of a flat puck whose friction is a law over slip speed.
-
-    Its path is straight: the two halves of the base beside it push to either side alike.
-    """
-    rho = radius * np.sqrt((np.arange(32) + 0.5) / 32)
-    theta = 2.0 * math.pi * (np.arange(64) + 0.5) / 64
-    along, aside = (np.outer(rho, trig).ravel() for trig in (np.cos(theta), np.sin(theta)))
-
-    def rates(_: float, z: np.ndarray) -> list[float]:
-        ahead, across = z[2] - z[3] * aside, z[3] * along
-        u = np.hypot(ahead, across)
-        pull = film_judge.G * law(u) / np.maximum(u, 1e-9)
-        turn = -2.0 / radius**2 * np.mean(pull * (along * across - aside * ahead))
-        return [*z[2:], -np.mean(pull * ahead), turn]
-
-    stop = lambda _, z: math.hypot(z[2], radius * z[3]) - 1e-3  # noqa: E731
-    stop.terminal = True
-    speed = math.hypot(*velocity)
-    found = solve_ivp(
-        rates, (0.0, float(times[-1]) + 1e-9), [0.0, 0.0, speed, spin], "RK45", rtol=1e-6,
-        atol=1e-8, dense_output=True, events=stop,
-    )  # fmt: skip
-    way, angle = found.sol(np.minimum(times, found.t[-1]))[:2]
-    return np.stack([*np.outer(np.array(velocity) / speed, way), angle])
 
 
 def wrong(film: Drawn, found: pt.results.Fit, errors: float = 4.0) -> dict[str, float]:
