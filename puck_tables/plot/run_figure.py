@@ -18,9 +18,9 @@ from puck_tables.plot.board import draw_board, show
 from puck_tables.plot.floor_axes import Box
 from puck_tables.plot.style import BLUE, GREEN, GREY, LAUNCH, ORANGE, RED, STOP, canvas
 from puck_tables.plot.titles import legend_below, noted, titled
-from puck_tables.scene.acting import acting
 from puck_tables.scene.run import Run
 from puck_tables.scene.scene_spec import SceneSpec
+from puck_tables.world.plan import acting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

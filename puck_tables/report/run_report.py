@@ -21,6 +21,14 @@ _LEAVES = {
     "tip": ("tips over", "tip over"),
 }
 _EMPIRICAL = "empirical: no dry friction over the contact explains it"
+_OVERHANG = (
+    "a rim comes over an edge; until its centre does, a puck is carried as if none of it hung in "
+    "the air, which it is not: its motion from there on is a guess"
+)
+_PRESSED_ON_REST = (
+    "what comes over an edge carries nothing: a base is pressed on what is left of it, linearly, "
+    "and stays level until its load is over the edge, where it tips"
+)
 _WIDEST = 48  # signs of a text in the table
 _ROUNDING = 1e-14  # of energies
 
@@ -73,14 +81,13 @@ def _of_one(run: Run) -> dict[str, str]:
 
 def _overhang(run: Run) -> str:
     """How those are carried that come over an edge."""
-    from puck_tables.scene.acting import CARRIED_BY_REST, OVERHANG
     from puck_tables.scene.map_of_floor import edges_under
     from puck_tables.world.named_pucks import pucks_of
 
     over = {event.puck for event in run.events if event.what == "overhang"}
     pucks = zip(run.names, pucks_of(run.scene), strict=True)
     hung = [len(edges_under(run.scene.alone(puck))) > 0 for name, puck in pucks if name in over]
-    return "; ".join([CARRIED_BY_REST] * any(hung) + [OVERHANG] * (not all(hung)))
+    return "; ".join([_PRESSED_ON_REST] * any(hung) + [_OVERHANG] * (not all(hung)))
 
 
 def _of_all(run: Run) -> dict[str, str]:

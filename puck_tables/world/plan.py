@@ -1,10 +1,14 @@
-"""How the pucks of a scene are moved, why so, and by which law they meet, in words."""
+"""What acts in a scene; how its pucks are moved, why so, and by which law they meet, in words."""
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import Any
+
 from puck_tables._core.fields import specs
-from puck_tables.scene.acting import EMPIRICAL, acting
+from puck_tables.errors import PuckError
 from puck_tables.scene.by_speed import laws_in
+from puck_tables.scene.entries import entries
 from puck_tables.scene.floor_parts import belts_of, has_laws_by_place
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
@@ -21,13 +25,51 @@ from puck_tables.world.obstacles import rule_of
 
 _NAMED = 6  # pucks of one way
 _CLOSER = f"closer than look-ups, which err by {TABLE_ERROR:g}"
+_EMPIRICAL = (
+    "The lateral force is empirical, as somebody fitted it: no dry friction over the contact "
+    "explains it."
+)
 _OF_EACH = ("force", "constraint")
-# what makes no motion another one, but where it ends
-_OF_OTHERS = (
-    "title", "puck", "pucks", "launch", "time", "frames", "tol", "gravity", "walls", "edges",
-    "posts", "arcs", "pockets", "lines", "rims",
+# entries that change no motion, or where it begins and ends, or whom it meets
+_FREE = (
+    "title", "puck", "launch", "time", "frames", "tol", "puck[]", "post", "arc", "pocket", "line",
+    "rim",
 )  # fmt: skip
+_NOT_OF_EACH = (*_FREE, "wall", "edge", "gravity")
 _ON_FLOOR = ("strips", "patches", "belts", "static friction")
+
+
+def acting(scene: SceneSpec) -> list[str]:
+    """What a scene says that acts beside dry friction, in its order.
+
+    Raises PuckError if an entry of the scene does not say what acts with it: it would be left out.
+
+    >>> from puck_tables import Drag, Puck, Scene
+    >>> acting(Scene(Puck(1.0), drag=Drag(sliding=0.1)))
+    ['drag']
+    """
+    kind: Any = type(scene)
+    if stray := _stray(kind):
+        raise PuckError(f"{', '.join(stray)}: the plan of a run knows no such ingredient")
+    effects = (entry for entry in entries(scene) if entry.value is not None and entry.acts)
+    there = list(dict.fromkeys(one.acts or "" for one in effects if one.value != one.default))
+    if scene.constraint is not None:
+        there[there.index("constraint")] = scene.constraint.kind
+    return there
+
+
+@lru_cache(maxsize=16)
+def _stray(kind: Any) -> list[str]:
+    """Entries that a scene, or a part of it, may have and that do not say what acts with them."""
+    return [path for name in specs(kind) if name not in _FREE for path in _mute(kind, name, name)]
+
+
+def _mute(kind: Any, name: str, path: str) -> list[str]:
+    spec = specs(kind)[name]
+    part = spec.metadata["kind"].part
+    if part is None:
+        return [path] if spec.metadata["acts"] is None else []
+    return [one for inner in specs(part) for one in _mute(part, inner, f"{path}.{inner}")]
 
 
 def plan_of(scene: SceneSpec) -> tuple[str, str]:
@@ -82,7 +124,7 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
             f"at rest friction holds {scene.floor.static_ratio:g} times what it brakes in a slip"
         )
     if scene.lateral.strength != 0.0:
-        lines.append(EMPIRICAL)
+        lines.append(_EMPIRICAL)
     if len(pucks) > 1 or scene.walls or scene.posts or scene.arcs:
         lines.append(rule_of(scene))
     return model, "\n".join(lines)
@@ -91,12 +133,11 @@ def plan_of(scene: SceneSpec) -> tuple[str, str]:
 def _acting_on(scene: SceneSpec, puck: ScenePuck) -> list[str]:
     """What acts on a puck beside dry friction on a level floor that moves steadily or not at all.
 
-    Raises PuckError as :func:`puck_tables.scene.acting.acting`.
+    Raises PuckError as :func:`acting`.
     """
     one = scene.alone(puck)
-    for spec in specs(type(scene)).values():
-        name = spec.name
-        if name not in _OF_OTHERS:
+    for name in specs(type(scene)):
+        if name not in _NOT_OF_EACH:
             value = getattr(puck if name in _OF_EACH else scene, name)
             object.__setattr__(one, name, value)
     return [what for what in acting(one) if what not in _ON_FLOOR]

@@ -16,7 +16,6 @@ import numpy.typing as npt
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import keep_on
 from puck_tables.errors import ContactError, PuckError
-from puck_tables.scene.acting import acting
 from puck_tables.scene.by_speed import end_of_laws
 from puck_tables.scene.map_of_floor import MANY
 from puck_tables.scene.scene_spec import SceneSpec
@@ -27,6 +26,7 @@ from puck_tables.world.engine_state import Engine, Whole
 from puck_tables.world.floor_under import SURE, law_goes_to
 from puck_tables.world.floors import may_be_mixed, velocities_under
 from puck_tables.world.named_pucks import pucks_of, start_of, with_launch
+from puck_tables.world.plan import acting
 from puck_tables.world.prepare import STEP_SHARE, Start, order_of, prepared, with_law_up_to
 from puck_tables.world.setting_off import PUSHING, REACHED
 from puck_tables.world.world import World
