@@ -150,22 +150,6 @@ def test_saving_in_a_deleted_folder_is_a_sentence(folder, tmp_path_factory, monk
     assert len(ended.stderr.splitlines()) == 1
 
 
-@pytest.mark.thorough
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no such device")
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("arguments", ["--help", "simulate --help", "--version", "scene fields"])
-def test_help_to_a_full_device_is_a_sentence(arguments: str, unbuffered: str):
-    with open("/dev/full", "w") as full:
-        ended = subprocess.run(
-            [sys.executable, "-c", "from puck_tables.cli.main import main; main()",
-             *arguments.split()],
-            stdout=full, stderr=subprocess.PIPE, text=True,
-            env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
-        )  # fmt: skip
-    assert ended.returncode == 1
-    assert ended.stderr == "Error: cannot write the results: No space left on device\n"
-
-
 @pytest.mark.parametrize("name", ["x" * 300, "x/" * 3000, "loop.toml", "shut/scene.toml"])
 @pytest.mark.parametrize("command", ["simulate --scene", "scene check", "info", "validate"])
 def test_what_cannot_be_read_does_not_say_written(name: str, command: str, folder: Path):

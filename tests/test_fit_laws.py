@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from rarely import few
 
 import puck_tables as pt
 
@@ -45,6 +46,21 @@ def test_the_law_of_many_films_is_chosen(law):
         found = pt.fit(film(puck_of(law), seed), pt.Puck(radius=0.04), laws=LAWS)
         right += found.laws[0].name == law
     assert right == 10
+
+
+@pytest.mark.parametrize(("law", "words"), few(1, [
+    ("annulus:0.8", "outside 0.8 r alone"), ("hertz", "as hertz"), ("ring", "as ring"),
+]))  # fmt: skip
+def test_another_pressure_is_named_where_uniform_does_not_fit(law, words):
+    """A slope, a radius or air were blamed for it."""
+    track = film(puck_of(law), 1)
+    found = pt.fit(track, pt.Puck(radius=0.04))
+    assert found.complaints and words in found.misfit.split("; or ")[0]
+    name, _, free = found.misfit.split("--pressure ")[1].split(")")[0].partition(" --free ")
+    known = pt.Puck(radius=0.04, pressure=name)
+    found = pt.fit(track, known, free=free.split(",") if free else None)
+    assert not found.complaints
+    assert found["friction"].value == pytest.approx(0.2, abs=4.0 * found["friction"].error)
 
 
 @pytest.mark.thorough

@@ -264,6 +264,11 @@ def test_what_is_asked_wrongly_is_said(tmp_path: Path, how: dict, words: str):
         read(tmp_path, "t,x,y\n0,1,2\n0.1,2,3\n", **how)
 
 
+def test_all_that_a_file_leaves_open_is_asked_at_once(tmp_path: Path):
+    with pytest.raises(InputError, match=r"--unit cm.*; give .*-unit deg.* and .*--fps 120.*, too"):
+        read(tmp_path, "x,y,theta\n1,2,3\n2,3,4\n")
+
+
 @pytest.mark.parametrize(
     ("content", "words"),
     [

@@ -94,11 +94,12 @@ class _Scale:
             raise InputError(
                 f"{path} does not say the unit of x and y: give unit (--unit cm), or for pixels "
                 "scale (--scale 0.5mm, the size of a pixel) or marks (--marks)"
+                f"{_besides(film, how)}"
             )
         if unit == PIXEL and how.size is None and how.plane is None:
             raise InputError(
                 f"{path} gives places in pixels: give the size of a pixel with scale (--scale "
-                "0.5mm), or four marks on the floor with marks (--marks)"
+                f"0.5mm), or four marks on the floor with marks (--marks){_besides(film, how)}"
             )
         self.plane = how.plane
         self.size = factor(unit, "length") if unit != PIXEL else how.size or 1.0
@@ -146,6 +147,16 @@ class _Scale:
         if self.plane is not None:
             return self.plane.angle(points, turned)
         return -turned if self.down else turned
+
+
+def _besides(film: Film, how: ReaderOptions) -> str:
+    """What else a file leaves open, behind what is asked of its places."""
+    angled = any(body.angles for body in film.bodies) and not (film.angle_unit or how.angle_unit)
+    timed = how.fps is not None or any(body.time is not None for body in film.bodies)
+    more = ["angle_unit (--angle-unit deg)"] * angled + ["frames a second (--fps 120)"] * (
+        not timed
+    )
+    return f"; give {' and '.join(more)}, too" if more else ""
 
 
 def _times(

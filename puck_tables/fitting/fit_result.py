@@ -22,7 +22,7 @@ from puck_tables.fitting.coupled_fit import Impact
 from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import INTEGRATED
 from puck_tables.fitting.forecast import HeldOut
-from puck_tables.fitting.misfit import LawScore, verdict
+from puck_tables.fitting.law_scores import LawScore, verdict
 from puck_tables.fitting.numbers import KIND, EstimatedLaunch, Number, as_json, refuse_unplayable
 from puck_tables.fitting.observations import Observations
 from puck_tables.fitting.problem import Known

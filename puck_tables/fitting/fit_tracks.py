@@ -32,7 +32,8 @@ from puck_tables.fitting.inputs import (
     refuse_tipping,
     refuse_unfit,
 )
-from puck_tables.fitting.misfit import LawScore, compare, misfit
+from puck_tables.fitting.law_scores import LawScore, compare
+from puck_tables.fitting.misfit import misfit
 from puck_tables.fitting.numbers import numbers_of
 from puck_tables.fitting.observations import Observations, noise_of
 from puck_tables.fitting.other_minima import (

@@ -1,17 +1,13 @@
-"""Why tracks do not fit, and which laws fit them best.
+"""Why tracks do not fit.
 
-Laws are compared by fits with the same unknowns to the same frames.  The noise is that of the law
-that leaves least (or the one given), and a residual beyond four standard deviations counts as four,
-so that no law gains by calling frames outliers.
-
-Where a fit misfits, angles or a radius read otherwise, drag, air, a slope, or a friction over the
+Angles or a radius read otherwise, another pressure law, drag, air, a slope, or a friction over the
 slip speed are tried out: where residuals then are far smaller, about as noise is, that is told.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
@@ -19,116 +15,19 @@ from typing import NamedTuple
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables.contact.laws import law_of
 from puck_tables.errors import InputError
 from puck_tables.fitting.checked_spec import FLOORS
-from puck_tables.fitting.estimate import Estimate, chi2_under, estimate
+from puck_tables.fitting.estimate import Estimate
 from puck_tables.fitting.fit_spec import INTEGRATED, MARK, NODES, NOTHING, FitSpec
 from puck_tables.fitting.initial_estimate import initial_estimate
 from puck_tables.fitting.problem import ROUGH, TURN, Problem
 from puck_tables.fitting.residuals import NO_PATTERN, SideForces
 from puck_tables.fitting.slowing import (
-    ALL_KNOWN,
     nearest_start,
-    on_a_floor,
     starts_from_slowing,
     tried,
 )
-
-_CONTENDS = 60.0  # of χ²: laws worse than the best by more are not fitted further
-
-
-class LawScore(NamedTuple):
-    """One law.
-
-    ``chi2``: squares of residuals under the common noise; ``unknowns``: how many were found;
-    ``weight``: its share of the Akaike weights exp(−½(χ² + 2 unknowns)); ``numbers``: what was
-    found of the puck.
-    """
-
-    name: str
-    chi2: float
-    unknowns: int
-    weight: float
-    numbers: dict[str, float]
-
-
-def compare(problem: Problem, variants: Mapping[str, FitSpec]) -> tuple[LawScore, ...]:
-    """The laws named, best first, of the frames of a problem; those that contend are fitted on.
-
-    Frames that another law leaves out at the ends may be those that tell.
-    """
-    fits, noise, known = dict[str, Estimate](), problem.noise, problem.known
-    for name, question in variants.items():
-        same = replace(problem, spec=question, known=known._replace(jitter=True))
-        try:
-            fits[name] = (
-                on_a_floor(same) if question.integrated else initial_estimate(same, refit=False)
-            )
-        except InputError:
-            if "+" not in name:  # no such floor leads to such a track
-                raise
-    place, angle = (
-        noise[kind] if known[kind] else min(one.problem.noise[kind] for one in fits.values())
-        for kind in range(2)
-    )
-    unknowns = np.array([one.x.size for one in fits.values()])
-    chi2 = np.array([chi2_under(one, (place, angle)) for one in fits.values()])
-    score = chi2 + 2.0 * unknowns
-    near = score < score.min() + _CONTENDS
-    for k, (name, before) in enumerate(fits.items()):
-        if near[k] and not (known.place and known.angle):
-            same = before.problem.with_noise((place, angle), before.x)
-            one = estimate(replace(same, known=ALL_KNOWN), before.x)
-            if (less := chi2_under(one, (place, angle))) < chi2[k]:
-                fits[name], chi2[k] = one, less
-    score = chi2 + 2.0 * unknowns
-    weight = np.exp(-0.5 * (score - score.min()))
-    weight /= weight.sum()
-    every = [*zip(fits.items(), *(one.tolist() for one in (chi2, unknowns, weight)), strict=True)]
-    return tuple(
-        LawScore(name, c, m, w, one.problem.numbers_at(one.x))
-        for (name, one), c, m, w in (every[k] for k in np.argsort(score, kind="stable"))
-    )
-
-
-_EACH = 7.0  # of χ², that each more number has to earn: ln n of a film of some hundred frames
-_AS_RIGHT = 10.0  # of that: floors that the film does not tell apart
-
-
-def verdict(laws: tuple[LawScore, ...]) -> str:
-    """Which of the laws compared a film supports, from the simplest up, in a sentence.
-
-    A law counts by χ² + 7 for each number.
-
-    >>> one = LawScore("uniform", 930.0, 8, 0.0, {})
-    >>> verdict((one._replace(name="uniform+air", chi2=700.0, unknowns=9), one))
-    'uniform+air is what the film supports: with 1 more number than uniform it leaves 230 less of \
-chi^2, and no other law leaves less for its numbers.'
-    """
-    if len(laws) < 2:
-        return ""
-    ranked = sorted(laws, key=lambda one: one.chi2 + _EACH * one.unknowns)
-    simplest = min(laws, key=lambda one: (one.unknowns, one.chi2))
-    best = ranked[0]
-    least = best.chi2 + _EACH * best.unknowns
-    alike = [one.name for one in ranked[1:] if one.chi2 + _EACH * one.unknowns < least + _AS_RIGHT]
-    if best is simplest:
-        said = (
-            f"{best.name} is enough: no law with more numbers leaves so much less of chi^2 that "
-            "they are worth it"
-        )
-    else:
-        more = best.unknowns - simplest.unknowns
-        words = f"{more} more number{'' if more == 1 else 's'} than"
-        said = (
-            f"{best.name} is what the film supports: with {words} {simplest.name} it leaves "
-            f"{simplest.chi2 - best.chi2:.4g} less of chi^2, and no other law leaves less for its "
-            "numbers"
-        )
-    if alike:
-        said += f"; {', '.join(alike)} may be as right: the film does not tell"
-    return f"{said}."
-
 
 _FAR = 1.5  # times smaller are residuals of a reading that is told
 _NEAR, _LEAST = 0.01, 1e-3  # of the radius: it is not another one; units are not mixed up by more
@@ -157,6 +56,8 @@ _LITTLE, _CLEAN = math.log(1.1), 1.4  # less than that is no reason; times the n
 _SPINS = 0.1  # rim speed over speed: such a puck's path is seen to bend
 _FAINT = 1e-3  # of what friction does: no force explains anything by so little
 _STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that for a level table
+_AS_A_RING = 0.99  # inner radius of an annulus over r
+_PRESSURES = (("hertz", ()), ("annulus:0.7", ("inner",)))  # to either side of uniform pressure
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
 
@@ -233,8 +134,8 @@ def misfit(result: Estimate, problem: Problem, forces: SideForces, speeds: bool)
         if drag and law and law.gain < drag.gain + _BETTER:  # more numbers fit a little better
             law = law._replace(gain=min(law.gain, drag.gain))
         explanations = [one for one in (drag, law, air, slope) if one]
-    marked = filter(None, [_reading(partial(_by_mark, result, problem))])
-    explanations += [*marked, *_otherwise(result, problem)]
+    more = (_reading(partial(by, result, problem)) for by in (_by_mark, _by_pressure))
+    explanations += [*filter(None, more), *_otherwise(result, problem)]
     best = max((one.gain for one in explanations), default=0.0)
     # sizes and angles are known better than floors: a floor that tells much is named first
     near = [
@@ -323,9 +224,39 @@ def _by_mark(result: Estimate, problem: Problem) -> _Reading:
     if not problem.angled or {*MARK} & spec.named:
         return _Reading("", 0.0)
     free = (*spec.free, *MARK)
-    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), refit=False)
+    gain, _ = _estimated(result, replace(problem, spec=replace(spec, free=free)))
     words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
-    return _Reading(words, _gain(result, _left(one.problem, one.x), problem.noise[0]), True)
+    return _Reading(words, gain, True)
+
+
+def _estimated(result: Estimate, other: Problem) -> tuple[float, dict[str, float]]:
+    """By how much smaller residuals of another problem are, and its numbers."""
+    one = initial_estimate(other, refit=False)
+    left = _left(one.problem, one.x)
+    return _gain(result, left, other.noise[0]), one.problem.numbers_at(one.x)
+
+
+def _by_pressure(result: Estimate, problem: Problem) -> _Reading:
+    """The pressure of Hertz, or that of an annulus, if it fits far better than that asked."""
+    best, spec = _Reading("", 0.0), problem.spec
+    if spec.base is not None or spec.integrated or spec.speeds or "inner" in spec.named:
+        return best
+    for name, more in _PRESSURES:
+        free, puck = (*spec.free, *more), replace(spec.puck, pressure=law_of(name))
+        other = replace(problem, spec=replace(spec, puck=puck, free=free), tall=False)
+        gain, numbers = _estimated(result, other)
+        inner = numbers.get("inner", 0.0)
+        if more and inner < _AS_A_RING:
+            words = (
+                f"with the base pressed outside {inner:.2g} r alone: find where (--pressure {name} "
+                f"--free {','.join(free)})"
+            )
+        else:
+            law = "ring" if more else name
+            words = f"with the base pressed as {law}: say so (--pressure {law})"
+        if gain > best.gain:
+            best = _Reading(words, gain, same=not more)
+    return best
 
 
 def _gain(result: Estimate, other: _Left, noise: float, scale: float = 1.0) -> float:
@@ -352,8 +283,8 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
     other = replace(problem, spec=spec, tall=False)
     plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
     x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
-    gain = _gain(result, _left(other, x), problem.noise[0])
-    numbers, speed = other.numbers_at(x), float(np.hypot(*launches[:, 2:4].T).max())
+    gain, numbers = _gain(result, _left(other, x), problem.noise[0]), other.numbers_at(x)
+    speed = float(np.hypot(*launches[:, 2:4].T).max())
     tilt, slowing, free = 0.0, result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
     if floor == "drag":
         force = abs(numbers["drag"]) * speed
