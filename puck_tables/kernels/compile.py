@@ -160,7 +160,7 @@ class Door:
         Compiled code has inf or NaN where Python refuses; a broken power of a negative number is
         complex here.
         """
-        before = [(array, array.copy()) for array in _arrays(args) if array.flags.writeable]
+        before = [(array, array.copy()) for array in arrays_in(args) if array.flags.writeable]
         begin = time.thread_time()
         here.as_written, here.until = True, begin + self._allowed - self.spent
         here.silent_until = min(here.until, begin + _SILENT - self.spent)
@@ -209,13 +209,13 @@ def _called(door: Door) -> set[Any]:
     return result
 
 
-def _arrays(values: tuple[Any, ...]) -> Iterator[Any]:
+def arrays_in(values: tuple[Any, ...]) -> Iterator[Any]:
     """The arrays among arguments, and in tuples of them."""
     for value in values:
         if isinstance(value, np.ndarray):
             yield value
         elif isinstance(value, tuple):
-            yield from _arrays(value)
+            yield from arrays_in(value)
 
 
 def _put_back(before: list[tuple[Any, Any]]) -> None:

@@ -16,6 +16,7 @@ from puck_tables._core.quantities import ANGLE, TIME, X, Y
 from puck_tables._core.read_columns import numbers_of
 from puck_tables.errors import InputError
 from puck_tables.kernels.compile import inlined
+from puck_tables.scene.over_time import rows_passed
 from puck_tables.scene.parts import Rows
 
 BEGINS, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
@@ -79,14 +80,7 @@ def fill_straight(start: float, duration: float, state: FloatArray, piece: Float
 @inlined
 def piece_at(pieces: FloatArray, first: int, last: int, t: float) -> int:
     """The row of the pieces first … last − 1, one after the other, in which t lies."""
-    low, high = first, last - 1
-    while low < high:
-        middle = (low + high + 1) // 2
-        if pieces[middle, BEGINS] <= t:
-            low = middle
-        else:
-            high = middle - 1
-    return low
+    return max(first, first + rows_passed(pieces, first, last, t) - 1)
 
 
 @inlined

@@ -7,14 +7,13 @@ plays it takes it from there, keeps as many boards as he likes, and puts one bac
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables.errors import InputError
-from puck_tables.kernels.compile import kernel
+from puck_tables.kernels.compile import arrays_in, kernel
 from puck_tables.scene.friction import SPIN, VX, VY
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world import stored
@@ -67,7 +66,7 @@ def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
     engine, count = board._first._engine, len(board.names)
     radius, steady = least_scales(engine)
     bench = board._bench(count * LONGEST)
-    for array in _arrays((bench.room.buffer, bench.place.buffer)):
+    for array in arrays_in((bench.room.buffer, bench.place.buffer)):
         array[...] = 0  # nobody has written there yet
     kept, pieces = board._store, np.zeros((2, count * LONGEST, PIECE_COLUMNS))
     pieces[0, : kept.pieces.shape[1]] = kept.pieces[-1]
@@ -86,14 +85,6 @@ def shipped(scene: SceneSpec) -> tuple[Shipped, Worlds]:
         bench, store, orders, limits, rows, none.copy(), np.zeros((1, count, 6)),
         np.zeros((1, count), np.int64),
     ), board  # fmt: skip
-
-
-def _arrays(parts: Any) -> Iterator[Any]:
-    for part in parts:
-        if isinstance(part, np.ndarray):
-            yield part
-        elif isinstance(part, tuple):
-            yield from _arrays(part)
 
 
 @kernel
