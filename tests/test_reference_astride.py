@@ -102,15 +102,6 @@ def test_forces_on_the_floor_by_scans_of_the_base(name: str):
     assert answer(answer.end_time).floor_torque.tolist() == [0.0]
 
 
-def test_a_spin_is_pushed_along_the_border():
-    answer = reference_case("astride-spin", times=[0.0])
-    mass = answer.pucks[0].mass
-    pushed = -answer.floor_fy[0] / mass  # towards +y, where the rim of more friction comes from
-    assert pushed == pytest.approx(0.11 * 10.0 / math.pi, rel=1e-12)
-    assert round(pushed, 4) == 0.3501
-    assert answer.last()["x"] == pytest.approx(0.0, abs=1e-15)
-
-
 def test_the_limit_is_that_of_the_friction_it_stops_on():
     """A tall puck stops whole on the second strip: as a free puck of that friction would."""
     crossing = reference_case("astride-crossing")
