@@ -19,7 +19,7 @@ from puck_tables.errors import InputError
 from puck_tables.reference.log import times_in
 from puck_tables.scene.over_time import drive_of
 from puck_tables.scene.restitution import restitution_law
-from puck_tables.world.drive import rows_of
+from puck_tables.world.paths import rows_of
 
 # how headings may be written, and units with their size
 NAMES = {

@@ -50,7 +50,7 @@ OWN = {
     "DryFriction", "ShotGame", "StoneGame", "TableGame", "game", "table_game",  # of agents
     "seen", "seen_speed", "seen_rim", "seen_epsilon",  # of a track: its frames; of a log
     "given", "cut_off", "rivals",  # of a fit and a forecast
-    "CARRIED_AWAY", "CARRIED_BY_REST", "CARRIED_ROUND", "carried",  # how a run ends
+    "CARRIED_AWAY", "CARRIED_ROUND", "carried",  # how a run ends
     "CURVES", "flights", "flights_per_period",  # of points over asperities
     "DRY",  # friction
 }  # fmt: skip

@@ -36,8 +36,8 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import line_of
 from puck_tables.trajectory import Trajectory
 from puck_tables.world.agreement import frictions_under
-from puck_tables.world.drive import rows_of
 from puck_tables.world.named_pucks import called, pucks_of, start_of
+from puck_tables.world.paths import rows_of
 
 # dark and light by turns, so that neighbours differ in grey as well (Okabe and Ito)
 PALETTE = (

@@ -36,6 +36,7 @@ PATCH_COLUMNS = 6
 # along and across, the angle of the first, 1: in the floor, or 0: in the body, and from AXES on f
 # over the slip speed (0: it is 1).
 AXES = 4
+MOST_EDGES = 6  # under one base: every cut may double the pieces of its contour
 
 
 class FloorMap(NamedTuple):

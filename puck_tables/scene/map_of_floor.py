@@ -18,7 +18,7 @@ from puck_tables.kernels.base_friction import packed, packed_round
 from puck_tables.kernels.pressed_part import NARROWEST
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.scene.by_speed import LAW_SHARE, UNDER_LAW_ERROR, key_of, moments_of
-from puck_tables.scene.floor_map import LOAD, NO_FLOOR_MAP, PATCH_COLUMNS, FloorMap
+from puck_tables.scene.floor_map import LOAD, MOST_EDGES, NO_FLOOR_MAP, PATCH_COLUMNS, FloorMap
 from puck_tables.scene.floor_parts import (
     belts_of,
     directions_in,
@@ -28,7 +28,6 @@ from puck_tables.scene.floor_parts import (
     largest_of,
 )
 from puck_tables.scene.floor_patches import corners_of
-from puck_tables.scene.over_edges import MOST_EDGES
 from puck_tables.scene.over_time import does_turn, largest_factors
 from puck_tables.scene.parts import Orthotropic
 from puck_tables.scene.scene_spec import SceneSpec

@@ -28,7 +28,7 @@ from puck_tables.world.engine_state import (
 )
 from puck_tables.world.floor_under import law_goes_to
 from puck_tables.world.named_pucks import pucks_of
-from puck_tables.world.paths import START as BEGINS
+from puck_tables.world.paths import BEGINS
 from puck_tables.world.prepare import Start, prepared, with_law_up_to
 from puck_tables.world.segment import ANGLE, GONE, PLACE_X, SEGMENT_COLUMNS, START, UNTIL
 

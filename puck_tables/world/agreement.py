@@ -27,8 +27,8 @@ from puck_tables.scene.parts import Drag, Force, Lateral, Launch
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, shape_faults
-from puck_tables.world.drive import rows_of
 from puck_tables.world.named_pucks import pucks_of, who
+from puck_tables.world.paths import rows_of
 from puck_tables.world.placement import misplaced
 
 CUSHIONS = ("wall", "post", "arc")  # what rims may meet besides pucks

@@ -15,7 +15,6 @@ from puck_tables.kernels.compile import inlined, kernel
 from puck_tables.scene.friction import SPIN, THETA, VX, VY, X, Y
 from puck_tables.scene.over_time import FORCED, with_angles
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.drive import fill_straight
 from puck_tables.world.engine_state import N_PIECES, Engine, Whole
 from puck_tables.world.floor_under import step_onto
 from puck_tables.world.floors import INTEGRATED, regions_of
@@ -41,7 +40,7 @@ from puck_tables.world.layout import (
 )
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.named_pucks import pucks_of
-from puck_tables.world.paths import on_piece
+from puck_tables.world.paths import fill_straight, on_piece
 from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X
 
 SHORT_OF = 1e-9  # of its radius: so far from cushions stops what is led, and never presses them

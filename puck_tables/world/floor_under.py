@@ -3,7 +3,7 @@
 Where friction differs, the rows of ``regions`` are all discs on the first strip, on the second, …,
 on every patch, and then all discs astride: on several frictions at once, each of which is felt
 under its own part of the base (:mod:`puck_tables.scene.base_on_floor`), or over an edge, carried by
-what is left of it (:mod:`puck_tables.scene.over_edges`).  ``regions.ground`` has
+what is left of it (:mod:`puck_tables.scene.base_balance`).  ``regions.ground`` has
 one such ground for every disc, all of one length, for each has its own load.
 """
 

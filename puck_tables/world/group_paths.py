@@ -31,7 +31,7 @@ from puck_tables.world.group import (
 )
 from puck_tables.world.layout import HOLD_VX, HOLD_VY, PULL_X, PULL_Y, TWIST, write_over
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.paths import DURATION, FOR_EVER, PIECE_COLUMNS, START
+from puck_tables.world.paths import BEGINS, DURATION, FOR_EVER, PIECE_COLUMNS
 from puck_tables.world.pressing import press
 from puck_tables.world.pushing import follow
 from puck_tables.world.step_ledger import LEDGER, WORK_COLUMNS
@@ -103,7 +103,7 @@ def _horizon(engine: Engine, t: float, size: int, place: Workplace) -> tuple[flo
         if engine.drives[i, 0] < engine.drives[i, 1]:  # what drives may turn where its piece ends
             row = place.engine.pieces[i]
             moves = moves or row[DURATION] >= FOR_EVER  # by hand, until it turns
-            horizon = min(horizon, row[START] + row[DURATION])
+            horizon = min(horizon, row[BEGINS] + row[DURATION])
     jumps = jump < math.inf
     if pulled or moves or jumps:  # for ever, perhaps, and faster than bounds should be
         horizon = min(horizon, t + 2.0 * engine.scale[0] / engine.scale[1])

@@ -28,8 +28,7 @@ from puck_tables.world.engine_state import (
 from puck_tables.world.group_paths import Workplace, paths_of
 from puck_tables.world.layout import INV_MASS, RADIUS, kinetic, write_over
 from puck_tables.world.lone import LONGEST
-from puck_tables.world.paths import DURATION, FIRST, FOR_EVER
-from puck_tables.world.paths import START as BEGINS
+from puck_tables.world.paths import BEGINS, DURATION, FIRST, FOR_EVER
 from puck_tables.world.segment import ANGLE, FIRST_PIECE, PATH, PLACE_X, PLACE_Y
 from puck_tables.world.segment_starts import (
     CURRENT,
@@ -55,8 +54,8 @@ from puck_tables.world.step_ledger import (
     RIM_HEAT,
     SEGMENT,
     SEVERAL,
+    WORK_START,
 )
-from puck_tables.world.step_ledger import START as WORK_START
 
 LOST_SHARE = 1e-15  # of the energy of free pucks: less lost as rims grip is rounding
 _PRESSES, _PRESSED = 1.0, 2.0  # ACTS of a contact: now, and before already

@@ -28,8 +28,7 @@ from puck_tables.world.floor_under import SURE, floor_of, law_goes_to, law_under
 from puck_tables.world.floors import slip_of_rim
 from puck_tables.world.layout import DRAG, INV_INERTIA, INV_MASS, PULL_X, PULL_Y, RADIUS, TWIST
 from puck_tables.world.lone_model import model_of
-from puck_tables.world.paths import DURATION, FOR_EVER
-from puck_tables.world.paths import START as PIECE_START
+from puck_tables.world.paths import BEGINS, DURATION, FOR_EVER
 from puck_tables.world.prepare import with_law_up_to
 from puck_tables.world.segment import (
     DAMPED,
@@ -83,14 +82,14 @@ def middle_of(engine: Engine, n: int, end: float) -> float:
     """
     segment = engine.history[n, 2:]
     piece, last = int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]) - 1
-    while last > piece and engine.pieces[last, PIECE_START] >= end:
+    while last > piece and engine.pieces[last, BEGINS] >= end:
         last -= 1
     if piece == last:
-        return engine.pieces[last, PIECE_START] + engine.pieces[last, DURATION]
-    half = 0.5 * (engine.pieces[piece, PIECE_START] + engine.pieces[last, PIECE_START])
-    while engine.pieces[piece, PIECE_START] < half:
+        return engine.pieces[last, BEGINS] + engine.pieces[last, DURATION]
+    half = 0.5 * (engine.pieces[piece, BEGINS] + engine.pieces[last, BEGINS])
+    while engine.pieces[piece, BEGINS] < half:
         piece += 1
-    return engine.pieces[piece, PIECE_START]
+    return engine.pieces[piece, BEGINS]
 
 
 @inlined
@@ -212,7 +211,7 @@ def prescribed_until(engine: Engine) -> float:
     for i in range(engine.drives.shape[0]):
         for row in range(engine.drives[i, 0], engine.drives[i, 1]):
             if engine.pieces[row, DURATION] < FOR_EVER:
-                last = max(last, engine.pieces[row, PIECE_START] + engine.pieces[row, DURATION])
+                last = max(last, engine.pieces[row, BEGINS] + engine.pieces[row, DURATION])
     return last
 
 

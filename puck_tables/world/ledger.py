@@ -49,9 +49,9 @@ from puck_tables.world.step_ledger import (
     RIM_HEAT,
     SEGMENT,
     SUPPORT_WORK,
+    WORK_START,
     add_worked,
 )
-from puck_tables.world.step_ledger import START as BEGINS
 
 if TYPE_CHECKING:
     from puck_tables.world.world import World
@@ -175,7 +175,7 @@ def tally(engine: Engine, times: FloatArray, room: Room, ends: FloatArray, out: 
         for k in range(begin, end):
             _add_flown(engine, n, times[k], room, out[k])
     for n in range(engine.counts[N_WORK_ROWS]):
-        begin = first_from(times, engine.work_rows[n, BEGINS])
+        begin = first_from(times, engine.work_rows[n, WORK_START])
         for k in range(begin, first_from(times, _end_of(engine, n, ends))):
             add_worked(engine.work_rows[n], times[k], out[k])
 
@@ -184,7 +184,7 @@ def tally(engine: Engine, times: FloatArray, room: Room, ends: FloatArray, out: 
 def _end_of(engine: Engine, n: int, ends: FloatArray) -> float:
     """When a row of works ends, perhaps with the segment of those who were sent on with it."""
     row = engine.work_rows[n]
-    end, segment = row[BEGINS] + row[DURATION], int(row[SEGMENT])
+    end, segment = row[WORK_START] + row[DURATION], int(row[SEGMENT])
     return min(end, ends[segment]) if segment >= 0 else end
 
 

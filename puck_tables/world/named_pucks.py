@@ -5,7 +5,7 @@ from __future__ import annotations
 from puck_tables._core.arrays import FloatArray
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
-from puck_tables.world.drive import rows_of
+from puck_tables.world.paths import rows_of
 
 
 def pucks_of(scene: SceneSpec) -> tuple[ScenePuck, ...]:

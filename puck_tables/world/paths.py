@@ -1,23 +1,79 @@
 """A path in pieces: polynomials of degree five through place, velocity and acceleration.
 
-What is integrated, or given by a film, is kept so: a piece is a row of start, duration, and at both
-ends x, y, angle with their first and second derivatives.  Its error falls with the sixth power of
-the duration.
+What is integrated is kept so, and the way of a driven body, from a table of its places.  A piece is
+a row of start, duration, and at both ends x, y, angle with their first and second derivatives.  Its
+error falls with the sixth power of the duration.
 """
 
 from __future__ import annotations
 
 import math
 
-from puck_tables._core.arrays import FloatArray
-from puck_tables.kernels.compile import inlined
+import numpy as np
 
-START, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
+from puck_tables._core.arrays import FloatArray
+from puck_tables._core.quantities import ANGLE, TIME, X, Y
+from puck_tables._core.read_columns import numbers_of
+from puck_tables.errors import InputError
+from puck_tables.kernels.compile import inlined
+from puck_tables.scene.parts import Rows
+
+BEGINS, DURATION, FIRST = range(3)  # FIRST: nine numbers at its start, nine at its end
 PIECE_COLUMNS = FIRST + 18  # all
+MAX_BYTES = 1 << 26  # of a file of a path: more is none
 FOR_EVER = 1e9  # s: what lasts as long has no end; its places are still good to 1e-16 of the way
 _ROUNDED = 1e-15  # of a place
 _CLOSED = 1e-12  # m or rad: by so much at most a place is put right at the end of a step
 _SMOOTH = 0.1  # of how far velocities bend: the most that places tell beyond these
+
+
+def rows_of(path: str | Rows) -> FloatArray:
+    """Rows (n, 4) of t, x, y, angle, given or from a CSV file; they may lack the angle.
+
+    One row, of t = 0, is a body that is led by hand.
+
+    Raises InputError if it cannot be read, or is no such table.
+
+    >>> rows_of(((0.0, 1.0, 2.0), (0.5, 1.0, 3.0)))[1].tolist()
+    [0.5, 1.0, 3.0, 0.0]
+    """
+    numbers = numbers_of(path, (TIME, X, Y, ANGLE), 3, MAX_BYTES)
+    rows = numbers.rows
+    if len(rows) != 1:
+        numbers.refuse_unless_ascending("the times")
+    if rows[0, 0] != 0.0:
+        raise InputError(f"must begin at t = 0, not at {rows[0, 0]:g} s")
+    return np.hstack([rows, np.zeros((len(rows), 4 - rows.shape[1]))])
+
+
+def pieces_along(rows: FloatArray) -> FloatArray:
+    """Straight pieces (n − 1, 21) between rows of t, x, y, angle; of one a piece of no duration.
+
+    >>> pieces_along(np.array([[0.0, 0.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]]))[0, 5].item()
+    0.5
+    """
+    pieces = np.zeros((max(len(rows) - 1, 1), PIECE_COLUMNS))
+    if len(rows) == 1:
+        pieces[0, FIRST : FIRST + 3] = pieces[0, FIRST + 9 : FIRST + 12] = rows[0, 1:]
+        return pieces
+    times = np.diff(rows[:, 0])
+    rates = np.diff(rows[:, 1:], axis=0) / times[:, None]
+    pieces[:, BEGINS], pieces[:, DURATION] = rows[:-1, 0], times
+    pieces[:, FIRST : FIRST + 3], pieces[:, FIRST + 9 : FIRST + 12] = rows[:-1, 1:], rows[1:, 1:]
+    pieces[:, FIRST + 3 : FIRST + 6] = pieces[:, FIRST + 12 : FIRST + 15] = rates
+    return pieces
+
+
+@inlined
+def fill_straight(start: float, duration: float, state: FloatArray, piece: FloatArray) -> None:
+    """Write one straight piece from a state (6,) on into a row (21,)."""
+    for column in range(PIECE_COLUMNS):
+        piece[column] = 0.0
+    piece[BEGINS], piece[DURATION] = start, duration
+    for i in range(3):
+        piece[FIRST + i], piece[FIRST + 3 + i] = state[i], state[3 + i]
+        piece[FIRST + 9 + i] = state[i] + duration * state[3 + i]
+        piece[FIRST + 12 + i] = state[3 + i]
 
 
 @inlined
@@ -26,7 +82,7 @@ def piece_at(pieces: FloatArray, first: int, last: int, t: float) -> int:
     low, high = first, last - 1
     while low < high:
         middle = (low + high + 1) // 2
-        if pieces[middle, START] <= t:
+        if pieces[middle, BEGINS] <= t:
             low = middle
         else:
             high = middle - 1
@@ -61,7 +117,7 @@ def _coefficients(piece: FloatArray, i: int) -> tuple[float, float, float, float
 def on_piece(piece: FloatArray, t: float, out: FloatArray) -> None:
     """X, y, angle, their rates, and the rates of these, at t, into ``out`` (9,)."""
     h = piece[DURATION]
-    s = (t - piece[START]) / h
+    s = (t - piece[BEGINS]) / h
     s = min(max(s, 0.0), 1.0)
     for i in range(3):
         x0, v0, a0 = piece[FIRST + i], h * piece[FIRST + 3 + i], h * h * piece[FIRST + 6 + i]

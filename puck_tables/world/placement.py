@@ -11,8 +11,8 @@ from puck_tables.scene.map_of_floor import edges_under
 from puck_tables.scene.pucks_and_posts import ScenePuck
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.scene.sides import ends_of_floor, gap_along, gap_to, line_of
-from puck_tables.world.drive import rows_of
 from puck_tables.world.named_pucks import called, start_of, who
+from puck_tables.world.paths import rows_of
 
 TOUCH = 1e-12  # of the radius: pucks that overlap less touch
 # of the reach: nearer to an edge what presses is a line, and friction by rounding known no better;

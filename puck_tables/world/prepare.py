@@ -22,7 +22,6 @@ from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.world import layout
 from puck_tables.world.agreement import steps_for
-from puck_tables.world.drive import pieces_along, rows_of
 from puck_tables.world.engine_state import (
     COUNTS,
     EVENT_COLUMNS,
@@ -45,7 +44,7 @@ from puck_tables.world.floors import (
 from puck_tables.world.lone import LONGEST
 from puck_tables.world.named_pucks import pucks_of, start_of
 from puck_tables.world.obstacles import borders_of, number_for, obstacles_of, rims_of
-from puck_tables.world.paths import FIRST, PIECE_COLUMNS
+from puck_tables.world.paths import FIRST, PIECE_COLUMNS, pieces_along, rows_of
 from puck_tables.world.segment import (
     ANGLE,
     FIRST_PIECE,

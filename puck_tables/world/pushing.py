@@ -43,7 +43,7 @@ from puck_tables.world.group import (
 )
 from puck_tables.world.group_forces import can_rest, count_rows, slip_at
 from puck_tables.world.layout import INV_MASS, LIES, RADIUS, ROUNDED, write_over
-from puck_tables.world.paths import DURATION, START, on_piece, piece_at
+from puck_tables.world.paths import BEGINS, DURATION, on_piece, piece_at
 from puck_tables.world.stepping import (
     BEGIN,
     END,
@@ -85,7 +85,7 @@ def _next_row(
         if motions[place] == DRIVEN:
             first, last = engine.drives[members[place], 0], engine.drives[members[place], 1]
             row = engine.pieces[piece_at(engine.pieces, first, last, t)]
-            turns = row[START] + row[DURATION]
+            turns = row[BEGINS] + row[DURATION]
             if t < turns < end:
                 end = turns
     return end

@@ -65,9 +65,9 @@ from puck_tables.world.step_ledger import (
     LEDGER,
     SEGMENT,
     SEVERAL,
+    WORK_START,
     add_worked,
 )
-from puck_tables.world.step_ledger import START as BEGINS
 
 _NEAR = 1e-9  # of the radius: what is as near may press
 STATE = SPIN + 1  # numbers of a state
@@ -158,10 +158,10 @@ def pushed_back(engine: Engine, i: int, since: Reported) -> tuple[FloatArray, Re
         if segment not in ends:
             ends[segment] = _end_of(engine, segment)
         end = ends[segment]
-        if min(float(row[BEGINS] + row[DURATION]), end) > now:
+        if min(float(row[WORK_START] + row[DURATION]), end) > now:
             still_open = min(still_open, n)
         driver = int(row[LED_BY])
-        if driver not in (i, SEVERAL) or min(now, end) < row[BEGINS]:
+        if driver not in (i, SEVERAL) or min(now, end) < row[WORK_START]:
             continue
         total = _worked(row, min(now, end))
         if n < since.work_rows:
@@ -181,7 +181,7 @@ def _of_impacts(events: FloatArray, i: int) -> FloatArray:
 def _worked(row: FloatArray, t: float) -> FloatArray:
     """What of a row was given by t."""
     ledger = np.zeros(LEDGER)
-    if t >= row[BEGINS]:
+    if t >= row[WORK_START]:
         add_worked(row, t, ledger)
     return ledger[[BACK_X, BACK_Y]]
 

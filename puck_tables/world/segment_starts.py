@@ -82,8 +82,7 @@ from puck_tables.world.layout import (
     write_over,
 )  # fmt: skip
 from puck_tables.world.lone import LONGEST, follow_alone
-from puck_tables.world.paths import DURATION, FIRST, FOR_EVER, bounds_of
-from puck_tables.world.paths import START as BEGINS
+from puck_tables.world.paths import BEGINS, DURATION, FIRST, FOR_EVER, bounds_of
 from puck_tables.world.segment import (
     ANGLE,
     DRIFT_X,

@@ -21,7 +21,7 @@ from puck_tables.scene.friction import SPIN, VX, VY, friction_force, size
 from puck_tables.scene.ingredients import DryFriction
 from puck_tables.world.engine_state import Engine
 from puck_tables.world.layout import DECEL, DRAG, INV_MASS, RADIUS, REGION
-from puck_tables.world.paths import DURATION, START, jerk_on, on_piece, piece_at
+from puck_tables.world.paths import BEGINS, DURATION, jerk_on, on_piece, piece_at
 from puck_tables.world.segment import (
     DAMPED,
     DRIFT_X,
@@ -56,7 +56,7 @@ def _knows(
             piece_at(engine.pieces, int(segment[FIRST_PIECE]), int(segment[LAST_PIECE]), t)
         ]
         on_piece(row, t, room)
-        return room[6], room[7], jerk_on(row), row[START] + row[DURATION] - t
+        return room[6], room[7], jerk_on(row), row[BEGINS] + row[DURATION] - t
     if kind == DAMPED:
         speed = math.hypot(vx, vy)
         drag = per_speed(disc[DRAG:], speed)

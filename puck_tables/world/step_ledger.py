@@ -20,7 +20,7 @@ LEDGER = 8
 # columns: the segment of one of them, a row of the history, or NO_FLIGHT; start and duration of the
 # step; which disc is driven among them, or NONE, or SEVERAL; at its start and end the powers, W,
 # and the works in between and up to its middle, J
-SEGMENT, START, DURATION, LED_BY, FIRST = range(5)
+SEGMENT, WORK_START, DURATION, LED_BY, FIRST = range(5)
 NO_SEGMENT = -1
 NONE, SEVERAL = -1, -2
 WORK_COLUMNS = FIRST + 4 * LEDGER
@@ -33,7 +33,7 @@ def write_work(
     halfway: FloatArray,
 ) -> None:  # fmt: skip
     """A step: the powers at its start, the works, the powers at its end, the works half way."""
-    row[START], row[DURATION], row[LED_BY] = start, h, NONE
+    row[WORK_START], row[DURATION], row[LED_BY] = start, h, NONE
     for i in range(LEDGER):
         row[BEGUN + i], row[DONE + i], row[ENDED + i] = begin[i], done[i], end[i]
         row[HALFWAY + i] = halfway[i]
@@ -43,7 +43,7 @@ def write_work(
 def add_worked(row: FloatArray, t: float, ledger: FloatArray) -> None:
     """Add what a row has worked by t to a ledger, J."""
     h = row[DURATION]
-    s = (t - row[START]) / h if h > 0.0 else 1.0
+    s = (t - row[WORK_START]) / h if h > 0.0 else 1.0
     for i in range(LEDGER):
         done = row[DONE + i]
         if 0.0 < s < 1.0:

@@ -31,9 +31,8 @@ from puck_tables.scene.radau import RADAU_ROWS
 from puck_tables.scene.steps import SHARES, STAGES, accelerations, come_by, rate_at, step
 from puck_tables.world import step_ledger
 from puck_tables.world.engine_state import N_HISTORY, N_PIECES, N_WORK_ROWS, Engine
-from puck_tables.world.paths import DURATION, on_piece
+from puck_tables.world.paths import BEGINS, DURATION, on_piece
 from puck_tables.world.paths import FIRST as PLACES
-from puck_tables.world.paths import START as BEGINS
 
 COARSER = 10.0  # times the error of a step: of a piece, whose errors do not add up
 _BETWEEN = 3.0  # times what its stages miss in the middle of a step are errors elsewhere

@@ -56,7 +56,7 @@ from puck_tables.world.group_forces import (
 )
 from puck_tables.world.layout import INV_INERTIA, INV_MASS, RADIUS, write_over
 from puck_tables.world.multipliers import close_gaps, leads, push_and_move, stop_slips
-from puck_tables.world.paths import DURATION, FIRST, START
+from puck_tables.world.paths import BEGINS, DURATION, FIRST
 from puck_tables.world.pressing import find_break_away, overborne, turn_directions
 from puck_tables.world.step_ledger import LEDGER, write_work
 
@@ -245,7 +245,7 @@ def add_work(h: float, start: float, row: FloatArray, buffer: GroupBuffer) -> No
 @inlined
 def write_piece(piece: FloatArray, start: float, h: float, place: int, buffer: GroupBuffer) -> None:
     """The way of a member on a step as a piece of its path."""
-    piece[START], piece[DURATION] = start, h
+    piece[BEGINS], piece[DURATION] = start, h
     write_over(piece[FIRST:], buffer.states[0, place])
     write_over(piece[FIRST + 6 :], buffer.stages[0, place, 3:])
     write_over(piece[FIRST + 9 :], buffer.states[1, place])
