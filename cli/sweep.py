@@ -200,10 +200,12 @@ class Whole:
         many = kept and result.work.size * max(1, len(getattr(result.work, "names", ()))) > SUMMED
         summed = kept and result.is_sample and (bool(self.regions) or not many)
         drawn = result.load() if summed or (kept and self.out.plot is not None) else result
+        if isinstance(drawn, Summary):
+            drawn = drawn.within(*self.regions)
         self.files.deliver(drawn, printed=not kept and not isinstance(result, Summary))
         say(str(result), err=True)
         if isinstance(drawn, Summary):
-            click.echo(drawn.summary(self.regions))
+            click.echo(drawn.summary())
         elif kept and result.is_sample:
             click.echo(
                 f"More than {SUMMED:,} samples are summed up only with --plot or --inside, in "

@@ -75,13 +75,6 @@ def test_the_rim_meets_a_border_a_radius_before_the_centre():
     assert (entry.x, away.x) == pytest.approx((0.26, 0.34), abs=1e-12)
 
 
-def test_a_spin_walks_along_the_border():
-    floor = pt.Floor(strips=pt.Strips((0.0,), (0.78, 0.67)))
-    puck = pt.Puck(radius=1.0, gravity=10.0)
-    run = pt.Scene(puck, floor, pt.Launch(spin=20.0), time=1e-6).simulate([1e-6])
-    assert abs(run.vy[0]) == pytest.approx(1e-6 * 0.3501408748, rel=1e-6)
-
-
 @pytest.mark.parametrize(("height", "at", "downhill"), [
     thorough(0.0, 0.5, 1.0), thorough(0.5, 0.0, math.pi / 2), (0.5, 0.5, 1.0),
 ])  # fmt: skip

@@ -68,7 +68,7 @@ def test_a_sample_of_a_board_is_what_runs_alone_give():
     assert found.of(1).chance((0.0, -9.0, 9.0, 9.0)).value == (~left).mean()
     with pytest.raises(pt.InputError, match="of several pucks, and a summary is of one"):
         found.mean()
-    told = found.summary([(0.8, 0.0, 0.3)])
+    told = found.within((0.8, 0.0, 0.3)).summary()
     assert "red orientation rad  " in told
     assert f"red leaves play with a chance of {left.mean():.6g} (95 %" in told
     assert "cue ends inside (0.8, 0, 0.3) m with a chance of 0 (95 %" in told
@@ -144,8 +144,10 @@ def test_a_picture_of_samples_counts_every_puck():
     left = int((found["red"]["in_play"] == 0.0).sum())
     assert {"cue: 60 in play", f"red: {60 - left} in play", f"red: {left} left play"} <= set(words)
     assert "puck[0].launch.spin normal:0.0:8.0 rad/s" in figure.get_suptitle().replace("\n", " ")
-    own = found.of("red").plot()
+    own = found.of("red").within((-1.0, -1.0, 0.5, 1.0), (9.0, 0.0, 0.1)).plot()
     assert own.axes[0].get_title("left").endswith(f"; {left} of 60 samples left play")
+    chance = found.of("red").chance((-1.0, -1.0, 0.5, 1.0)).value
+    assert [text.get_text() for text in own.axes[0].texts] == [f"{100.0 * chance:.3g} %", "0 %"]
 
 
 @pytest.mark.thorough
@@ -160,7 +162,7 @@ def test_samples_of_a_board_on_the_command_line(tmp_path: Path, monkeypatch: pyt
     for more in (["-o", "s.csv"], ["-o", "s.h5", "--plot", "s.png"], ["-o", "s.zarr"]):
         result = invoke(*words, *more)
         assert result.exit_code == 0, result.stderr
-        assert result.stdout.rstrip() == truth.summary([(0.8, 0.0, 0.3)])
+        assert result.stdout.rstrip() == truth.within((0.8, 0.0, 0.3)).summary()
         assert "60 at rest" in result.stderr
     rows = Path("s.csv").read_text().splitlines()
     assert len(rows) == 121 and rows[0].startswith("puck[1],puck_0_launch_velocity_1[m/s]")

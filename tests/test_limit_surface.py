@@ -75,7 +75,7 @@ def test_known_points_of_a_tilted_load():
 @pytest.mark.parametrize(("delta", "turned"), [(0.0, 0.0), (0.5, 0.3), (2.0, 3.0)])
 def test_normals_are_those_of_the_curve_of_size_and_torque(delta: float, turned: float):
     """By differences along it; friction that is turned from the slip turns them with it."""
-    surface = pt.Puck.similar(delta=delta, pressure="uniform").limit_surface(4001)
+    surface = pt.Puck.similar(delta=delta, pressure="uniform").limit_surface(1001)
     force, torque = np.hypot(surface.force_x, surface.force_y), surface.torque
     curve = np.stack([np.gradient(torque), -np.gradient(force)])[:, 1:-1]
     curve = np.arctan2(curve[1], curve[0])

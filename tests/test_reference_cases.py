@@ -14,13 +14,13 @@ from pucks_judge import Disc, Floor, Line, play
 from rarely import thorough
 from reference import states as flat_states
 from scipy.integrate import solve_ivp
+from test_reference_astride import shares_off
 
 from puck_tables import InputError, compare, floor_friction, reference_case
 from puck_tables.reference.cases import CASES, case_named
 
 FREE = ("coin", "slide-spin-0.2", "slide-spin-0.5", "slide-spin-1", "slide-spin-2", "slide-spin-5",
         "tall-0.5", "tall-1")  # fmt: skip
-OTHERS = ("incline-below", "incline-at", "incline-above", "belt", "turntable")
 BESIDE = 1.0 - 1e-15  # the judge has no number at v = rω itself
 NOT_YET = 0.97  # of the way to the stop, where scipy still has its digits
 
@@ -51,14 +51,9 @@ def test_free_cases_by_an_independent_integrator(name: str):
     assert answer.share_bound <= 1e-10
     times = np.linspace(0.05, NOT_YET, 7) * answer.end_time
     z = flat_states((v / q, 0.0), rim / q, delta, times * j / q)
-    ours = answer(times)
-    scale = 2e-10  # the judge's own error next to the bound
-    for mine, truth, unit in (
-        (ours.vx, z[0], q), (ours.vy, z[1], q), (r * ours.spin, z[2], q),
-        (ours.x, z[3], q * q / j), (ours.y, z[4], q * q / j),
-        (r * ours.orientation, z[5], q * q / j),
-    ):  # fmt: skip
-        assert np.abs(mine / unit - truth).max() < scale
+    length, back = q * q / j, [3, 4, 5, 0, 1, 2]
+    truth = z[back] * np.array([length, length, length / r, q, q, q / r])[:, None]
+    assert shares_off(answer, times, truth).max() < 2e-10  # the judge's own error next to the bound
 
 
 @pytest.mark.parametrize("name", ["coin", "slide-spin-2", "tall-1"])
@@ -191,47 +186,6 @@ def test_elementary_cases_and_the_threshold_of_a_slope():
     steep = reference_case("incline-above")
     assert steep.end == reference_case("incline-at").end == "time is up"
     assert reference_case("incline-below").end == "at rest"
-
-
-@pytest.mark.parametrize("name", OTHERS)
-def test_slopes_and_moving_floors_by_an_independent_integrator(name: str):
-    """Newton's law at velocities relative to the floor, friction by elliptic integrals of scipy."""
-    from reference import friction
-
-    tables = case_named(name).tables
-    puck, floor, launch = tables["puck"], tables.get("floor", {}), tables["launch"]
-    r, m_g, f = puck["radius"], puck["gravity"], puck["friction"]
-    slope, down = floor.get("slope", 0.0), floor.get("downhill", 0.0)
-    delta = 2.0 * f * puck["height"] / r
-    belt, turning = np.array(floor.get("velocity", (0.0, 0.0))), floor.get("turning", 0.0)
-    pull = m_g * math.sin(slope) * np.array([math.cos(down), math.sin(down)])
-
-    def rates(_: float, y: np.ndarray) -> list[float]:
-        under = belt + turning * np.array([-y[1], y[0]])
-        ux, uy = y[3:5] - under
-        rim = r * (y[5] - turning)
-        a = (
-            friction(ux, uy, rim, delta)
-            if rim
-            else (-ux / math.hypot(ux, uy), -uy / math.hypot(ux, uy), 0.0)
-        )
-        j = f * m_g * math.cos(slope)
-        return [*y[3:], pull[0] + j * a[0], pull[1] + j * a[1], j * a[2] / r]
-
-    answer = reference_case(name)
-    share = 1.0 if answer.end == "time is up" else NOT_YET
-    times = np.linspace(0.1, share, 5) * answer.end_time
-    start = [*launch.get("position", (0.0, 0.0)), 0.0, *launch["velocity"], launch.get("spin", 0.0)]
-    truth = solve_ivp(
-        rates, (0.0, times[-1]), start, "DOP853", t_eval=times, rtol=1e-12, atol=1e-13
-    ).y
-    ours = answer(times)
-    q, j = answer.speed_scale, answer.rate_scale
-    for row, mine, unit in zip(
-        truth, (ours.x, ours.y, ours.orientation, ours.vx, ours.vy, ours.spin),
-        (q * q / j, q * q / j, q * q / j / r, q, q, q / r), strict=True,
-    ):  # fmt: skip
-        assert np.abs(row - mine).max() < 3e-9 * unit
 
 
 def discs_of_the_take_out() -> list[Disc]:

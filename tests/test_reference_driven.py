@@ -11,6 +11,7 @@ from base_judge import Judge
 from reference import friction
 from scipy.integrate import dblquad, solve_ivp
 from scipy.optimize import root
+from test_reference_astride import shares_off
 
 from puck_tables import reference_case
 from puck_tables.reference.answer import Answer
@@ -19,6 +20,7 @@ from puck_tables.reference.cases import case_named
 BOX = [(-0.1, -0.05), (0.1, -0.05), (0.1, 0.05), (-0.1, 0.05)]
 LOAD, MASS, G = 0.3 * 0.5 * 9.81, 0.5, 9.81
 GYRATION = math.sqrt((0.04 + 0.01) / 12.0)
+NOT_YET = 0.97  # of the way to the stop, where scipy still has its digits
 
 
 def test_a_force_that_grows_breaks_the_box_away() -> None:
@@ -102,25 +104,44 @@ def follow(answer: Answer, rates, start: float, times: np.ndarray) -> None:
     truth = solve_ivp(
         rates, (start, times[-1]), state, "DOP853", t_eval=times, rtol=1e-12, atol=1e-13
     ).y
-    ours = answer(times)
-    q, j, r = answer.speed_scale, answer.rate_scale, answer.pucks[0].radius
-    for row, mine, unit in zip(
-        truth, (ours.x, ours.y, ours.orientation, ours.vx, ours.vy, ours.spin),
-        (q * q / j, q * q / j, q * q / j / r, q, q, q / r), strict=True,
-    ):  # fmt: skip
-        assert np.abs(row - mine).max() < 3e-9 * unit
+    assert shares_off(answer, times, truth).max() < 3e-9
+
+
+def on_floor(name: str, turning=lambda t: 0.0):
+    """Newton's law at velocities relative to the floor, friction by elliptic integrals of scipy."""
+    tables = case_named(name).tables
+    puck, floor = tables["puck"], tables.get("floor", {})
+    r, f, g = puck["radius"], puck["friction"], puck["gravity"]
+    slope, down = floor.get("slope", 0.0), floor.get("downhill", 0.0)
+    delta, belt = 2.0 * f * puck["height"] / r, np.array(floor.get("velocity", (0.0, 0.0)))
+    pull = g * math.sin(slope) * np.array([math.cos(down), math.sin(down)])
+    j = f * g * math.cos(slope)
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        turns = floor.get("turning", 0.0) + turning(t)
+        ux, uy = y[3:5] - belt - turns * np.array([-y[1], y[0]])
+        rim, v = r * (y[5] - turns), math.hypot(ux, uy)
+        ax, ay, aw = friction(ux, uy, rim, delta) if rim else (-ux / v, -uy / v, 0.0)
+        return [*y[3:], pull[0] + j * ax, pull[1] + j * ay, j * aw / r]
+
+    return rates
 
 
 def test_a_disc_on_a_turntable_that_speeds_up_by_an_independent_integrator() -> None:
-    r, j, delta, alpha = disc_on_the_turntable()
-
-    def rates(t: float, y: np.ndarray) -> list[float]:
-        under = alpha * t * np.array([-y[1], y[0]])
-        ux, uy = y[3:5] - under
-        ax, ay, aw = friction(ux, uy, r * (y[5] - alpha * t), delta)
-        return [*y[3:], j * ax, j * ay, j * aw / r]
-
+    rates = on_floor("turntable-speeds-up", lambda t: 4.0 * t)
     follow(reference_case("turntable-speeds-up"), rates, 0.8, np.linspace(0.85, 1.5, 5))
+
+
+@pytest.mark.parametrize(
+    "name", ["incline-below", "incline-at", "incline-above", "belt", "turntable"]
+)
+def test_slopes_and_moving_floors_by_an_independent_integrator(name: str) -> None:
+    answer = reference_case(name)
+    launch, first = case_named(name).tables["launch"], answer([0.0])
+    assert (first.vx.item(), first.vy.item()) == pytest.approx(launch["velocity"], rel=1e-15)
+    assert first.spin.item() == launch.get("spin", 0.0)
+    share = 1.0 if answer.end == "time is up" else NOT_YET
+    follow(answer, on_floor(name), 0.0, np.linspace(0.1, share, 5) * answer.end_time)
 
 
 @pytest.mark.parametrize(

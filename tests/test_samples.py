@@ -146,7 +146,7 @@ def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
                      "-o", "s.h5", "--plot", "s.png")  # fmt: skip
     assert result.exit_code == 0, result.stderr
     same = PUCK.sample(5000, 7, **SPREADS)
-    assert result.stdout.rstrip() == same.summary([(2.2, -0.16, 0.1)])
+    assert result.stdout.rstrip() == same.within((2.2, -0.16, 0.1)).summary()
     assert Path("s.png").stat().st_size > 10_000
     for words, said in (
         (["--random", "10"], "--random needs a --spread"),

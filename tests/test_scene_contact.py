@@ -36,7 +36,7 @@ def test_a_wall_that_a_step_would_leap(tol: float, tmp_path: Path) -> None:
     assert events(run, "impact")[0] == pytest.approx(min(roots[roots > 0]), rel=1e-12)
 
 
-@pytest.mark.parametrize("restitution", [0.3, 0.9, 0.999, 1.0])
+@pytest.mark.parametrize("restitution", [0.0, 0.3, 0.9, 0.999, 1.0])
 def test_rebounds_straight_down_a_slope_die_out(restitution: float) -> None:
     """Up at a₊, down at a₋ = g sin α ± f g cos α: each hop shorter by e √(a₋/a₊)."""
     r, f, slope, v0 = 0.04, 0.1, 0.4, 0.5
@@ -52,6 +52,7 @@ def test_rebounds_straight_down_a_slope_die_out(restitution: float) -> None:
     ratio = restitution * math.sqrt(down / up)
     hop = back / up + back / math.sqrt(up * down)
     assert run.end == "at rest"
+    assert [event.what for event in run.events][-2:] == ["contact", "stick"]
     # the last rebounds, lower than digits tell, are a contact, as the estimate says
     late = abs(run.end_time - first - hop / (1.0 - ratio)) * run.rate_scale / run.speed_scale
     assert late <= 1.1 * run.error_estimate <= 5e-6
@@ -100,26 +101,41 @@ def test_oblique_rebounds_end_as_leaning_begins(restitution: float) -> None:
     assert run.energy_residual < 1e-12
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1])
-@pytest.mark.parametrize("restitution", [0.5, 0.9])
-def test_a_wedge_holds_a_puck_that_is_pushed_into_it(friction: float, restitution: float) -> None:
-    half, r = 0.1, 0.02
+@pytest.mark.parametrize(
+    ("half", "friction", "restitution", "rim"),
+    [
+        *((0.1, friction, e, {}) for friction in (0.0, 0.1) for e in (0.5, 0.9)),
+        *((half, 0.1, 0.0, rim) for half in (0.1, 0.3, 0.6)
+          for rim in ({}, {"tangential": 0.0, "friction": 0.3})),
+    ],
+)  # fmt: skip
+def test_a_wedge_holds_a_puck_that_is_pushed_into_it(
+    half: float, friction: float, restitution: float, rim: dict[str, float]
+) -> None:
+    """Without restitution at once: it leans on one wall, then on both."""
+    r = 0.02
     run = simulate_scene({
         "puck": {"radius": r, "mass": 0.5, "friction": friction},
-        "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
+        "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-1.5, 0.0]},
         "force": {"constant": [5.0, 0.0]},
         "wall": [
             {"point": [0, 0], "normal": [-math.sin(half), s * math.cos(half)],
-             "restitution": restitution}
-            for s in (1, -1)
+             "restitution": restitution, **rim}
+            for s in (-1, 1)
         ],
-        "time": 4.0,
+        "time": 5.0,
     })  # fmt: skip
     assert run.last["x"] == pytest.approx(-r / math.sin(half), rel=1e-12)
     assert abs(run.last["y"]) < 1e-14
     assert math.hypot(run.last["vx"], run.last["vy"]) < 1e-15
     assert run.last["spin"] == pytest.approx(0.0 if friction else 30.0, rel=1e-14)
     assert run.energy_residual < 1e-11
+    if restitution == 0.0:
+        caught = [(event.what, event.partner) for event in run.events if event.partner != "floor"]
+        assert caught[:2] == [("impact", "wall 0"), ("contact", "wall 0")]
+        assert ("contact", "wall 1") in caught[2:]
+        assert run.events[-1].what == "stick" and run.end == "at rest"
+        assert run.error_estimate <= 1e-8
 
 
 def test_a_rough_corner_stops_a_spin() -> None:

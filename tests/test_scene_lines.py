@@ -58,36 +58,6 @@ def test_impulses_of_a_rough_wall(friction: float) -> None:
     assert run.last["spin"] == pytest.approx(4.0 - 0.3 * push / inertia, rel=1e-12)
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.5, 0.9])
-def test_bounces_without_number_end_leaning(restitution: float) -> None:
-    """Down an incline onto a wall: bounces in a geometric series, then it leans and rests."""
-    slope = 0.5
-    pull = G * (math.sin(slope) - 0.2 * math.cos(slope))
-    slow = G * (math.sin(slope) + 0.2 * math.cos(slope))
-    run = simulate_scene(
-        scene(
-            floor={"slope": slope}, wall=[{**WALL, "restitution": restitution}],
-            launch={"velocity": [0.0, 0.0], "position": [0.5, 0.0]},
-        )
-    )  # fmt: skip
-    assert run.end == "at rest"
-    hit = math.sqrt(2.0 * 0.5 / pull)
-    # each flight: up at deceleration `slow`, back at `pull`
-    share = restitution * math.sqrt(pull / slow)
-    v, total = pull * hit, hit
-    for _ in range(2000):
-        v *= restitution
-        total += v / slow + (v / math.sqrt(slow * pull))
-        v *= math.sqrt(pull / slow)
-    assert share < 1.0
-    # rebounds lower than the last digits of the place are a contact, as the estimate says
-    lost = 1.1 * run.error_estimate * run.speed_scale / run.rate_scale
-    assert run.error_estimate <= 5e-6
-    assert run.end_time == pytest.approx(total, abs=lost if restitution else 1e-10)
-    assert run.last["x"] == pytest.approx(1.0, abs=1e-12)
-    assert [e[1] for e in run.events][-2:] == ["contact", "stick"]
-
-
 def test_strips_by_pieces() -> None:
     """v² = v₀² − 2 Σ f_i g l_i for pure translation straight across, of all parts on the mean."""
     strips = {"borders": [1.5, 4.0], "friction": [0.1, 0.0, 0.3]}

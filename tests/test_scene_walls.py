@@ -131,29 +131,6 @@ def test_a_puck_that_leaves_a_wall_keeps_its_distance_to_it() -> None:
     assert run.last["y"] == pytest.approx(0.9, abs=1e-14)
 
 
-@pytest.mark.parametrize("half", [0.1, 0.3, 0.6])
-@pytest.mark.parametrize("rim", [{}, {"tangential": 0.0, "friction": 0.3}])
-def test_walls_without_restitution_catch_a_puck_at_once(half: float, rim: dict[str, float]) -> None:
-    walls = [
-        {
-            "point": [1.0, 0.0], "normal": [-math.sin(half), -side * math.cos(half)],
-            "restitution": 0.0, **rim,
-        }
-        for side in (1.0, -1.0)
-    ]  # fmt: skip
-    run = simulate_scene({
-        "puck": {"radius": 0.02, "mass": 0.5, "friction": 0.1}, "wall": walls,
-        "launch": {"velocity": [1.0, 0.3], "spin": 30.0, "position": [-0.5, 0.0]},
-        "force": {"constant": [5.0, 0.0]}, "time": 5.0,
-    })  # fmt: skip
-    caught = [(event.what, event.partner) for event in run.events if event.partner != "floor"]
-    assert caught[:2] == [("impact", "wall 0"), ("contact", "wall 0")]
-    assert ("contact", "wall 1") in caught[2:]
-    assert [event.what for event in run.events[-1:]] == ["stick"] and run.end == "at rest"
-    assert run.last["x"] == pytest.approx(1.0 - 0.02 / math.sin(half), rel=1e-12)
-    assert run.error_estimate <= 1e-8
-
-
 @pytest.mark.parametrize("tol", [1e-3, 1e-5, 1e-7, 1e-9])
 def test_what_a_turning_floor_loses_before_it_meets_a_wall(tol: float) -> None:
     slope, downhill, turning, centre = 0.2731, 2.957796, 1.8737, np.array([-0.777424, 0.116109])

@@ -314,9 +314,19 @@ def test_a_door_is_handed_to_other_processes_by_its_name():
     ("name", "value"),
     [
         ("NUMBA_NUM_THREADS", "0"), ("NUMBA_NUM_THREADS", "-2"), ("NUMBA_NUM_THREADS", "many"),
-        ("NUMBA_CPU_FEATURES", "nonsense"), ("NUMBA_OPT", "best"), ("NUMBA_BOUNDSCHECK", "x"),
+        ("NUMBA_CPU_FEATURES", "nonsense"),
     ],
 )  # fmt: skip
+def test_settings_at_which_numba_would_end_are_refused_before(name, value, monkeypatch):
+    monkeypatch.setenv(name, value)
+    with pytest.raises(pt.InputError, match=f"{name}={value}: set it to "):
+        doors.read_settings()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    few(2, [("NUMBA_NUM_THREADS", "0"), ("NUMBA_OPT", "best"), ("NUMBA_BOUNDSCHECK", "x")]),
+)
 def test_settings_that_numba_cannot_use_are_refused_in_one_sentence(name, value, tmp_path):
     given = {**os.environ, **COMPILED, name: value, "NUMBA_CACHE_DIR": str(tmp_path)}
     ended = subprocess.run([*PUCK, *LAUNCH], env=given, capture_output=True, text=True)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from copy import copy
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +39,31 @@ class Summary:
 
     summed: tuple[str, ...]
     place: tuple[str, str]
+    regions: tuple[npt.ArrayLike, ...] = ()
+
+    def within(self, *regions: npt.ArrayLike) -> Self:
+        """Samples whose summary and picture tell how many of them end inside regions.
+
+        Parameters
+        ----------
+        regions : each (x, y, r), a disc; (x1, y1, x2, y2), a rectangle; or corners (n, 2); m
+
+        Raises
+        ------
+        InputError
+            If a region is none of these, or empty.
+
+        Examples
+        --------
+        >>> from puck_tables import Normal, Puck
+        >>> found = Puck.similar().sample(10_000, 7, spin=Normal(5.0, 0.2), speed=1.0)
+        >>> found.within((2.2, -0.16, 0.1)).summary().splitlines()[-1][:55]
+        'ends inside (2.2, -0.16, 0.1) m with a chance of 0.7563'
+        """
+        checked_regions(regions)
+        result = copy(self)
+        object.__setattr__(result, "regions", regions)
+        return result
 
     def counted(self, name: str) -> FloatArray:
         """A column (samples,), NaN where it does not count."""
@@ -132,9 +158,9 @@ class Summary:
             self._rows(self.place)
         return chance_of(int(np.count_nonzero(inside)), self.ended)
 
-    def summary(self, regions: Sequence[npt.ArrayLike] = ()) -> str:
+    def summary(self) -> str:
         """Means, deviations and quantiles in a table, and the chances of regions; lines of text."""
-        return "\n".join([head(), *self.rows(self.summed), *self.chances(regions)])
+        return "\n".join([head(), *self.rows(self.summed), *self.chances(self.regions)])
 
     def rows(self, names: Sequence[str], label: str = "", wide: int = _WIDE) -> list[str]:
         """Means, deviations and quantiles of columns, as a table; none of less than two samples."""
@@ -155,7 +181,7 @@ class Summary:
         if places.shape[1] > 1 and (places.std(axis=1) > 0.0).all():
             correlation = float(np.corrcoef(*places)[0, 1])
             lines.append(f"correlation of {self.place[0]} and {self.place[1]}: {correlation:.4g}")
-        for region in listed("regions", regions, "regions"):
+        for region in regions:
             one = self.chance(region)
             numbers = finite_array("region", region, "m").ravel()
             words = ", ".join(f"{number:g}" for number in numbers)

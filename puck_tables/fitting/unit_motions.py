@@ -34,7 +34,7 @@ from puck_tables.contact.laws import Law, law_of
 from puck_tables.kernels.base_friction import packed
 from puck_tables.motion.body import body_of, plain_up_to
 from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
-from puck_tables.motion.unit_motion import frame_of
+from puck_tables.motion.unit_motion import Frame, frame_of
 from puck_tables.stopping.launch_arrays import launches_in
 from puck_tables.stopping.launch_derivatives import fill_placed_states
 from puck_tables.stopping.solvers import followed
@@ -71,7 +71,7 @@ class UnitMotions:
         """Motions of a body that stands at an angle (rad) at the launch."""
         return self
 
-    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+    def own(self, delta: float, frame: Frame, times: FloatArray) -> FloatArray:
         """States with Q = J = r = 1 and their derivatives, (n, 6, 6), as of ``unit_states``."""
         raise NotImplementedError
 
@@ -90,17 +90,11 @@ class UnitMotions:
         """States (6, n) of a launch (6,), and their derivatives (n, 6, 7) by it and by time."""
         vx, vy, spin, _, decel, radius = launch.tolist()
         frame, slopes = frame_of((vx, vy), spin, decel, radius), np.empty((times.size, 6, 7))
-        ratios = frame.speed / frame.slip, frame.rim / frame.slip
-        own = self.own(float(launch[3]), *ratios, times / frame.time)
+        own = self.own(float(launch[3]), frame, times)
         fill_placed_states(launch, times, own, slopes)
-        x, y, turn, ahead, aside, rim = own[:, :, 0].T
-        per_second = frame.slip / frame.length
-        states = np.stack([
-            *frame.place(x, y), frame.side * (frame.length / frame.radius) * turn,
-            *(per_second * np.array(frame.place(ahead, aside))),
-            frame.side * (frame.slip / frame.radius) * rim,
-        ])  # fmt: skip
-        return states, slopes
+        angle = frame.side / frame.radius
+        units = np.repeat([frame.length, frame.slip], 3) * [1.0, 1.0, angle, 1.0, 1.0, angle]
+        return units[:, None] * own[:, :, 0].T, slopes
 
 
 class PlainMotions(UnitMotions):
@@ -144,10 +138,10 @@ class LawMotions(UnitMotions):
         self._table, self._gyration = _law_table(law), gyration
         self.highest = full_contact(law)
 
-    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+    def own(self, delta: float, frame: Frame, times: FloatArray) -> FloatArray:
         """By the table of the law."""
         friction = variations_by(slopes_of_table(self._table, delta), self._gyration)
-        return unit_states(friction, cosine, sine, tau, _LOCAL)
+        return unit_states(friction, frame, times, _LOCAL)
 
 
 class TallMotions(UnitMotions):
@@ -170,12 +164,12 @@ class TallMotions(UnitMotions):
             return self._plain.states_and_slopes(launch, times)
         return super().states_and_slopes(launch, times)
 
-    def own(self, delta: float, cosine: float, sine: float, tau: FloatArray) -> FloatArray:
+    def own(self, delta: float, frame: Frame, times: FloatArray) -> FloatArray:
         """Of that cubic, by δ exactly."""
-        out = np.zeros((tau.size, 6, 6))
+        out = np.zeros((times.size, 6, 6))
         for height, weight, slope in _heights(delta):
             friction = _tall_variations(height, self._gyration)
-            result = unit_states(friction, cosine, sine, tau, _LOCAL)
+            result = unit_states(friction, frame, times, _LOCAL)
             result[:, :, _BY_DELTA] = 0.0
             out += weight * result
             out[:, :, _BY_DELTA] += slope * result[:, :, 0]

@@ -13,7 +13,7 @@ from puck_tables.errors import InputError
 from puck_tables.plot.animation import Animation, film_of
 from puck_tables.plot.board import close_up, draw_board, finished, panels_for, show
 from puck_tables.plot.floor_axes import Box
-from puck_tables.plot.sample_figure import HELD, cloud_of
+from puck_tables.plot.sample_figure import HELD, cloud_of, draw_regions
 from puck_tables.plot.style import GREY
 from puck_tables.plot.titles import legend_below, noted
 from puck_tables.scene.run import LAST_END
@@ -85,6 +85,7 @@ def _draw(axes: Axes, ends: SceneEnds, film: Animation, box: Box) -> None:
         if isinstance(ends, Sample):
             _hold(axes, x[playing > 0.0], y[playing > 0.0], body.line)
     if isinstance(ends, Sample):
+        draw_regions(axes, ends)
         axes.plot(
             [], [], color=GREY, linewidth=1.0, label=f"holds {100 * HELD:.0f} % of a puck in play"
         )

@@ -15,6 +15,7 @@ from puck_tables._core.arrays import FloatArray, broadcast, finite_array, positi
 from puck_tables._core.fields import Unsaid
 from puck_tables.errors import InputError
 from puck_tables.motion.body import STANDARD_GRAVITY, UnitPuck
+from puck_tables.motion.unit_motion import frame_of
 from puck_tables.stopping.launch_arrays import (
     DECEL,
     DELTA,
@@ -286,13 +287,13 @@ def integrated_jacobians(
 
     def work(puck: int, mine: npt.NDArray[np.int64]) -> None:
         launch, times = launches[:, puck], moments[mine]
-        speed, rim = np.hypot(launch[0], launch[1]), abs(launch[5] * launch[2])
-        slip = float(np.hypot(speed, rim))
+        vx, vy, spin, height, decel, radius = launch.tolist()
+        frame = frame_of((vx, vy), spin, decel, radius)
         part = np.zeros((mine.size, len(STATE_NAMES), len(MOMENT_NAMES)))
-        if slip > 0.0:
-            friction = frictions[float(launch[3])]
-            friction.refuse_limit(speed, rim)
-            own = unit_states(friction, speed / slip, rim / slip, times / slip * launch[4])
+        if frame.slip > 0.0:
+            friction = frictions[height]
+            friction.refuse_limit(np.array(frame.speed), np.array(frame.rim))
+            own = unit_states(friction, frame, times)
             fill_placed_states(launch, times, own, part)
         out[mine] = part
 

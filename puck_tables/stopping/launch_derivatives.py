@@ -123,7 +123,7 @@ def by_launch(
     c: float, s: float, inverse: float, time: float, value: Numbers, by_angle: Numbers,
     by_height: Numbers, by_time: Numbers,
 ) -> Numbers:  # fmt: skip
-    """A state and its derivatives in natural units, six rows of six.
+    """A state and its derivatives in natural units, along x and y, six rows of six.
 
     ``c``, ``s``: of the slip angle of the launch; ``inverse``: 1/c.  The others: x, y, body angle,
     vx, vy, rω at a time, and their derivatives by φ, δ, and that time.  Columns: itself; by v, v
@@ -142,30 +142,6 @@ def by_launch(
     return (
         x, xv, -y * inverse, xa, x4, x5, y, yv, x * inverse, ya, y4, y5, b, bv, 0.0, ba, b4, b5,
         vx, pv, -vy * inverse, pa, p4, p5, vy, qv, vx * inverse, qa, q4, q5, a, av, 0.0, aa, a4, a5,
-    )  # fmt: skip
-
-
-@inlined
-def in_world(own: Numbers, east: float, north: float, around: float) -> Numbers:
-    """Six rows of six along and to the left of the launch, as such along x and y.
-
-    (``east``, ``north``): the direction of the launch; ``around``: the sign of its spin.
-    """
-    x0, y0 = rotated(own[0], around * own[6], east, north)
-    x1, y1 = rotated(own[1], around * own[7], east, north)
-    x2, y2 = rotated(around * own[2], own[8], east, north)
-    x3, y3 = rotated(own[3], around * own[9], east, north)
-    x4, y4 = rotated(own[4], around * own[10], east, north)
-    x5, y5 = rotated(own[5], around * own[11], east, north)
-    p0, q0 = rotated(own[18], around * own[24], east, north)
-    p1, q1 = rotated(own[19], around * own[25], east, north)
-    p2, q2 = rotated(around * own[20], own[26], east, north)
-    p3, q3 = rotated(own[21], around * own[27], east, north)
-    p4, q4 = rotated(own[22], around * own[28], east, north)
-    p5, q5 = rotated(own[23], around * own[29], east, north)
-    return (
-        x0, x1, x2, x3, x4, x5, y0, y1, y2, y3, y4, y5, *own[12:18],
-        p0, p1, p2, p3, p4, p5, q0, q1, q2, q3, q4, q5, *own[30:],
     )  # fmt: skip
 
 
@@ -202,7 +178,7 @@ def placed_state(
     east: float, north: float, around: float, spin: float, decel: float, unit: float,
     radius: float, deflection: float, slip: float, time: float, own: Numbers,
 ) -> Numbers:  # fmt: skip
-    """From natural units, along x and y (:func:`in_world`), six rows of six to six of seven.
+    """From natural units, along x and y, six rows of six to six of seven.
 
     ``unit``: 1/J; ``deflection``: 1/r.
     """
@@ -269,10 +245,9 @@ def fill_placed_states(
     flat, numbers = own.reshape(-1), out.reshape(-1)
     for n in range(times.size):
         patience(1)
-        row = weighted_rows(flat, OWN_STATES * n, (1.0,), OWN_STATES)
         placed = placed_state(
             east, north, around, spin, decel, unit, radius, 1.0 / radius, slip, times[n],
-            in_world(row, east, north, around),
+            weighted_rows(flat, OWN_STATES * n, (1.0,), OWN_STATES),
         )  # fmt: skip
         for k in range(PLACED_STATES):
             numbers[PLACED_STATES * n + k] = placed[k]

@@ -32,7 +32,7 @@ from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.path import STOPPED, integrate
 from puck_tables.motion.state import LENGTH, PSI, SIZE, THETA, T, U, X, Y
 from puck_tables.motion.steppers import DORMAND_PRINCE
-from puck_tables.motion.unit_motion import direction
+from puck_tables.motion.unit_motion import Frame, direction
 from puck_tables.stopping.launch_derivatives import (
     STATES,
     at_same_time,
@@ -57,7 +57,6 @@ _CHUNK = 16  # motions that a thread takes at once
 _AT_LINE = 3e-6  # nearer to a line that is the limit the derivative is not known to 1e-7
 _POWERS = np.array([1.0, 2.0, 2.0, 2.0, 2.0])  # of Q
 _STOP = [T, X, Y, LENGTH, THETA]
-_OF_STATE = [U, PSI, T, X, Y, THETA]
 _LEAST_SHARE = 1e-30  # of Q
 
 
@@ -210,18 +209,18 @@ def unit_stops(friction: Variations, cosine: FloatArray, sine: FloatArray) -> Fl
 
 
 def unit_states(
-    friction: Variations, cosine: float, sine: float, times: FloatArray, local: float = LOCAL
+    friction: Variations, frame: Frame, times: FloatArray, local: float = LOCAL
 ) -> FloatArray:
     """States of one launch with Q = J = r = 1 at times, and their derivatives.
 
-    ``cosine``, ``sine``: of the slip angle of the launch, ≥ 0; ``times``: array (n,), ≥ 0;
-    ``local``: the error of a step.  Returns array (n, 6, 6): of x, y, body angle, vx, vy, rω:
-    themselves; by v, v across, rω, δ, time.
+    ``frame``: of the launch, which moves; ``times``: array (n,), s, ≥ 0; ``local``: the error of a
+    step.  Returns array (n, 6, 6): of x, y, body angle, vx, vy, rω: themselves; by v, v across,
+    rω, δ, time; body angle and rω as of counter-clockwise spin.
     """
     from puck_tables.motion.variation import VARIED, fill_state_variations, vary
 
-    c, s = max(cosine, _TINY), max(sine, _TINY)
-    u = float(np.log(s / c))
+    c, s = max(frame.speed / frame.slip, _TINY), max(frame.rim / frame.slip, _TINY)
+    u, times = float(np.log(s / c)), times / frame.time
     z, y = np.empty(_STEP_LIMIT), np.empty((_STEP_LIMIT, SIZE))
     result, work, stop = np.empty(SIZE + 1), np.empty((8, VARIED)), np.empty(VARIED)
     status, count = integrate(
@@ -235,33 +234,40 @@ def unit_states(
     which, z = _moments(times, ends, path, stop, friction)
     rows, rates = np.empty((times.size, VARIED)), np.empty((times.size, VARIED))
     fill_state_variations(z, which, ends, path, stop, DORMAND_PRINCE, friction.slopes, rows, rates)
-    return _own_states(rows, rates, z, times, c, s)
+    return _own_states(rows, rates, z, times, (c, s), frame)
 
 
 def _own_states(
-    rows: FloatArray, by_z: FloatArray, z: FloatArray, times: FloatArray, c: float, s: float
-) -> FloatArray:
+    rows: FloatArray, by_z: FloatArray, z: FloatArray, times: FloatArray,
+    ratios: tuple[float, float], frame: Frame,
+) -> FloatArray:  # fmt: skip
     """States (n, 6, 6) at ``times`` from a motion and its variations (n, 21) at z (n,), 1 at rest.
 
-    ``by_z``: d/dz of the motion.
+    ``by_z``: d/dz of the motion; ``ratios``: v/Q and r|ω|/Q at the launch.
     """
     from puck_tables.motion.variation import BLOCKS, KEPT
 
-    own, by_u, by_height = rows.reshape(-1, BLOCKS, KEPT).transpose(1, 2, 0)
-    (cosine, sine), (east, north) = direction(own[U]), (np.cos(own[PSI]), np.sin(own[PSI]))
+    def in_world(along: Any, left: Any) -> Any:
+        return rotated(along, frame.side * left, frame.east, frame.north)
+
+    def change(block: Any) -> Any:
+        places = in_world(block[X], block[Y])
+        return block[U], frame.side * block[PSI], block[T], *places, block[THETA]
+
+    (c, s), (own, by_u, by_height) = ratios, rows.reshape(-1, BLOCKS, KEPT).transpose(1, 2, 0)
+    cosine, sine = direction(own[U])
+    east, north = in_world(np.cos(own[PSI]), np.sin(own[PSI]))
     q, quarter = (1.0 - z) ** 4, 0.25 * (1.0 - z)  # −dz/d ln Q
     speed, rim = q * cosine, q * sine
-    fall = 1.0 / np.where(z < 1.0, by_z[:, T] * quarter, np.inf)
-    moving: Any = (
-        speed, rim, cosine, sine, east, north, fall, by_z[:, U] * quarter, -by_z[:, PSI] * quarter
-    )  # fmt: skip
-    value: Any = own[X], own[Y], own[THETA], speed * east, speed * north, rim
-    by_angle: Any = by_u[_OF_STATE] / (c * s)
-    tilted: Any = by_height[_OF_STATE]
     at_times: Any = times
+    value: Any = *in_world(own[X], own[Y]), own[THETA], speed * east, speed * north, rim
+    fall = 1.0 / np.where(z < 1.0, by_z[:, T] * quarter, np.inf)
+    swing = -frame.side * by_z[:, PSI] * quarter
+    moving: Any = speed, rim, cosine, sine, east, north, fall, by_z[:, U] * quarter, swing
     own_states = by_launch(
-        c, s, 1.0 / c, at_times, value, at_same_time(by_angle, moving),
-        at_same_time(tilted, moving), at_same_time((0.0, 0.0, -1.0, 0.0, 0.0, 0.0), moving),
+        c, s, 1.0 / c, at_times, value,
+        at_same_time(change(by_u / (c * s)), moving), at_same_time(change(by_height), moving),
+        at_same_time((0.0, 0.0, -1.0, 0.0, 0.0, 0.0), moving),
     )  # fmt: skip
     columns = [np.broadcast_to(one, z.shape) for one in own_states]
     return np.stack(columns, axis=-1).reshape(-1, STATES, STATES)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -238,13 +238,13 @@ class Sample(SceneEnds, Summary):
             self.counted("x")
         return chance_of(int(np.count_nonzero(self.in_play == 0.0)), max(self.ended, 1))
 
-    def summary(self, regions: Sequence[npt.ArrayLike] = ()) -> str:
+    def summary(self) -> str:
         """Means, deviations and quantiles in a table, for each puck, and chances; lines of text.
 
         Of pucks that left play how often they did; a region is told for each puck.
         """
         if not self.names:
-            return "\n".join([super().summary(regions), *self._left()])
+            return "\n".join([super().summary(), *self._left()])
         shown = self.names[:_MOST_PUCKS]
         labels = [name if len(name) <= _WIDEST else f"{name[: _WIDEST - 3]}..." for name in shown]
         wide = max(map(len, labels)) + len(" orientation rad ")
@@ -252,7 +252,7 @@ class Sample(SceneEnds, Summary):
         for name, label in zip(shown, labels, strict=True):
             one = self.of(name)
             rows += one.rows(_PLACES, f"{label} ", wide)
-            chances += [f"{label} {line}" for line in (*one.chances(regions), *one._left())]
+            chances += [f"{label} {line}" for line in (*one.chances(self.regions), *one._left())]
         if len(self.names) > len(shown):
             chances.append(f"and {len(self.names) - len(shown)} more pucks (-o FILE saves all)")
         return "\n".join(rows + chances)
