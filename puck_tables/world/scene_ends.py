@@ -24,13 +24,10 @@ from puck_tables.world.engine_state import Whole
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SceneEnds(Result):
-    """How and where the runs of a scene end; a :class:`Map` or a :class:`Sample`.
+    """How and where the runs of a scene end; a :class:`Map` or a :class:`Sample`, which tell more.
 
-    ``names``: of the pucks, none where the scene has one ``puck``; ``columns``: arrays by name, of
-    the shape of the runs, of several pucks with the pucks last, NaN for a run without an end;
-    ``end``: how each ends, an index of ``meanings``; ``model``, and ``explanation`` why it was
-    taken, of the first run that is valid; ``endless``: what :meth:`without_end` says; ``files``:
-    what stands in the files that the scene names, by path; ``whose``: the puck that it is of.
+    ``explanation``: why the ``model`` was taken of the first run that is valid; ``endless``: what
+    :meth:`without_end` says; ``whose``: the puck that it is of.
     """
 
     scene: SceneSpec
