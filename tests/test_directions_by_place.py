@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -138,6 +139,7 @@ def floor_of(strips: list[Any], patch: Any) -> pt.Floor:
 
 def body(shape: str, height: float) -> pt.Puck:
     base: Any = {"base": "box:0.2x0.1"} if shape == "box" else {"radius": ROUND}
+    base |= {"pressure": shape} if shape.startswith("annulus") else {}
     return pt.Puck(**base, friction=0.2, height=height, mass=1.0, gravity=1.0)
 
 
@@ -190,13 +192,15 @@ def ends(floor: pt.Floor, shape: str) -> np.ndarray:
     return np.array([run.end_time, *(run.last[key] for key in ("x", "y", "orientation"))])
 
 
-@pytest.mark.parametrize("shape", ["box", "round"])
-def test_stretches_of_one_direction_are_one_floor(shape: str) -> None:
-    one = ends(pt.Floor(orthotropic=WOOD), shape)
-    strips = pt.Floor(strips=pt.Strips((0.1, 0.3), (WOOD, WOOD, WOOD), direction=0.3))
-    patch = pt.Floor(orthotropic=WOOD, patches=[pt.Patch(WOOD, (0.15, 0.03), 0.07)])
+@pytest.mark.parametrize(
+    ("shape", "one"), [*product(("box", "round"), (WOOD, STRIBECK, ICY)), ("annulus:0.6", STRIBECK)]
+)
+def test_stretches_of_one_friction_are_one_floor(shape: str, one: Any) -> None:
+    alone = floor_of([one], None)
+    strips = pt.Floor(strips=pt.Strips((0.1, 0.3), (one, one, one), direction=0.3))
+    patch = replace(alone, patches=[pt.Patch(one, (0.15, 0.03), 0.07)])
     for floor in (strips, patch):
-        assert np.abs(ends(floor, shape) - one).max() < 3e-9
+        assert np.abs(ends(floor, shape) - ends(alone, shape)).max() < 3e-9
 
 
 def test_equal_frictions_of_a_stretch_are_its_number() -> None:

@@ -19,7 +19,6 @@ LAUNCH = pt.Launch((1.0, 0.2), spin=10.0)
 FAST = pt.Launch((300.0, 0.0))  # up to which slip laws are tabulated
 PUCKS: dict[str, dict[str, Any]] = {
     "round": {"radius": 0.05, "height": 0.03},
-    "annulus": {"radius": 0.05, "pressure": "annulus:0.6"},
     "box": {"base": "box:0.1x0.06", "height": 0.03},
 }
 
@@ -31,15 +30,6 @@ def ends(floor: pt.Floor, name: str, launch: pt.Launch = LAUNCH) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", PUCKS)
-def test_stretches_of_one_law_are_one_floor(name: str) -> None:
-    one = ends(pt.Floor(law=ICE), name)
-    strips = pt.Floor(strips=pt.Strips((0.1, 0.2), (ICE, ICE, ICE), direction=0.3))
-    patch = pt.Floor(law=ICE, patches=[pt.Patch(ICE, (0.15, 0.03), 0.07)])
-    for floor in (strips, patch):
-        assert np.abs(ends(floor, name) - one).max() < 3e-9
-
-
-@pytest.mark.parametrize("name", ["round", "box"])
 def test_a_law_that_is_constant_is_the_number(name: str) -> None:
     points = [[0.0, 0.1], [50.0, 0.1]]
     two = [pt.Floor(strips=pt.Strips((0.1,), (0.2, one), direction=0.2)) for one in (0.1, points)]
