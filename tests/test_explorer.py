@@ -37,19 +37,24 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 @pytest.fixture(scope="module")
-def tab(address: str) -> Iterator[tuple[Any, list[str]]]:
-    """A page of a browser, and what it says: a new page takes longer than most tests."""
-    said: list[str] = []
+def browser() -> Iterator[Any]:
     sandbox = [] if os.getuid() else ["--no-sandbox"]
     with sync_api.sync_playwright() as play:
         chromium = play.chromium.launch(executable_path=CHROMIUM, args=sandbox)
-        page = chromium.new_page()
-        page.context.set_offline(True)
-        page.on("console", lambda message: said.append(message.text))
-        page.on("pageerror", lambda error: said.append(str(error)))
-        page.on("request", lambda request: request.url == address or said.append(request.url))
-        yield page, said
+        yield chromium
         chromium.close()
+
+
+@pytest.fixture(scope="module")
+def tab(browser: Any, address: str) -> tuple[Any, list[str]]:
+    """A page of a browser, and what it says: a new page takes longer than most tests."""
+    said: list[str] = []
+    page = browser.new_page()
+    page.context.set_offline(True)
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.on("request", lambda request: request.url == address or said.append(request.url))
+    return page, said
 
 
 @pytest.fixture

@@ -153,9 +153,8 @@ def _besides(film: Film, how: ReaderOptions) -> str:
     """What else a file leaves open, behind what is asked of its places."""
     angled = any(body.angles for body in film.bodies) and not (film.angle_unit or how.angle_unit)
     timed = how.fps is not None or any(body.time is not None for body in film.bodies)
-    more = ["angle_unit (--angle-unit deg)"] * angled + ["frames a second (--fps 120)"] * (
-        not timed
-    )
+    more = ["angle_unit (--angle-unit deg)"] if angled else []
+    more += [] if timed else ["frames a second (--fps 120)"]
     return f"; give {' and '.join(more)}, too" if more else ""
 
 
