@@ -57,6 +57,7 @@ _SPINS = 0.1  # rim speed over speed: such a puck's path is seen to bend
 _FAINT = 1e-3  # of what friction does: no force explains anything by so little
 _STEEP, _STEEPEST = 3.0, 10.0  # degrees: hardly anybody, or nobody, takes that for a level table
 _AS_A_RING = 0.99  # inner radius of an annulus over r
+_MIDDLE = {"inner": 0.5}  # where a search begins
 _PRESSURES = (("hertz", ()), ("annulus:0.7", ("inner",)))  # to either side of uniform pressure
 _HELD = ("launch_spin", "launch_angle")  # what is said of these is said of the angles as they are
 
@@ -224,16 +225,17 @@ def _by_mark(result: Estimate, problem: Problem) -> _Reading:
     if not problem.angled or {*MARK} & spec.named:
         return _Reading("", 0.0)
     free = (*spec.free, *MARK)
-    gain, _ = _estimated(result, replace(problem, spec=replace(spec, free=free)))
+    one = initial_estimate(replace(problem, spec=replace(spec, free=free)), refit=False)
     words = f"if what is tracked lies off the centre: find where (--free {','.join(free)})"
-    return _Reading(words, gain, True)
+    return _Reading(words, _gain(result, _left(one.problem, one.x), problem.noise[0]), True)
 
 
-def _estimated(result: Estimate, other: Problem) -> tuple[float, dict[str, float]]:
-    """By how much smaller residuals of another problem are, and its numbers."""
-    one = initial_estimate(other, refit=False)
-    left = _left(one.problem, one.x)
-    return _gain(result, left, other.noise[0]), one.problem.numbers_at(one.x)
+def _near(result: Estimate, other: Problem) -> tuple[float, dict[str, float]]:
+    """By how much smaller residuals of another problem are near what was found, and its numbers."""
+    at, launches = result.problem.numbers_at(result.x), result.problem.launches(result.x)
+    plain = np.clip(other.unknowns({**NOTHING, **_MIDDLE, **at}, launches), *other.limits)
+    x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
+    return _gain(result, _left(other, x), other.noise[0]), other.numbers_at(x)
 
 
 def _by_pressure(result: Estimate, problem: Problem) -> _Reading:
@@ -244,7 +246,7 @@ def _by_pressure(result: Estimate, problem: Problem) -> _Reading:
     for name, more in _PRESSURES:
         free, puck = (*spec.free, *more), replace(spec.puck, pressure=law_of(name))
         other = replace(problem, spec=replace(spec, puck=puck, free=free), tall=False)
-        gain, numbers = _estimated(result, other)
+        gain, numbers = _near(result, other)
         inner = numbers.get("inner", 0.0)
         if more and inner < _AS_A_RING:
             words = (
@@ -281,9 +283,7 @@ def _by_floor(result: Estimate, problem: Problem, floor: str) -> _Reading:
         bounds = {**bounds, "drag": (-most, most)}
     spec = replace(spec, free=(*spec.free, *FLOORS[floor]), bounds=bounds)
     other = replace(problem, spec=spec, tall=False)
-    plain = np.clip(other.unknowns({**NOTHING, **at}, launches), *other.limits)
-    x = nearest_start(other, starts_from_slowing(other) or [(other, plain)])[1]
-    gain, numbers = _gain(result, _left(other, x), problem.noise[0]), other.numbers_at(x)
+    gain, numbers = _near(result, other)
     speed = float(np.hypot(*launches[:, 2:4].T).max())
     tilt, slowing, free = 0.0, result.problem.spec.scales(at)[0], f"(--free {','.join(spec.free)})"
     if floor == "drag":
