@@ -29,6 +29,7 @@ HELD = 0.95  # of the samples inside the outer line
 _HELD = (HELD, 0.5)
 _FLAT = 2e-3  # a cloud thinner than this over its length is seen as a line
 _FEW = 50  # samples have no density
+_EDGE = 0.01  # of the side of a map, between it and a word
 _ROUND = 97  # corners of a disc's outline
 _LIGHT = 0.15  # of the ramp: less is not seen on white
 _SHARES = (0.025, 0.5, 0.975)  # of the samples: the median, and what 95 % lie between
@@ -91,8 +92,8 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     scene = getattr(samples, "scene", None)
     painted = [] if scene is None else painted_on(scene)
     draw_painted(panel, painted, 2.5)  # as the rings of a house, over the density
-    draw_regions(panel, samples)
     panel.set(xlim=sides[0], ylim=sides[1])
+    draw_regions(panel, samples)
     no_rounding(panel)
     panel.set(xlabel=COLUMNS[samples.place[0]].axis, ylabel=COLUMNS[samples.place[1]].axis)
     notes = ["x and y of different scale"]
@@ -108,17 +109,18 @@ def draw_regions(panel: Axes, samples: Summary) -> None:
     for number, region in enumerate(samples.regions):
         form = np.asarray(region, np.float64)
         if form.shape == (3,):
-            turn = np.linspace(0.0, 2.0 * np.pi, _ROUND)
+            turn = np.linspace(0.0, 2.0 * np.pi, _ROUND, endpoint=False)
             form = form[:2] + form[2] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
         elif form.shape == (4,):
             form = form[[[0, 1], [2, 1], [2, 3], [0, 3]]]
-        x, y = np.concatenate([form, form[:1]]).T
-        label = "region" if number == 0 else None
-        panel.plot(x, y, color="black", linewidth=1.2, zorder=5, label=label)
+        (x, y), label = form.T, "region" if number == 0 else None
+        panel.fill(x, y, fill=False, color="black", linewidth=1.2, zorder=5, label=label)
         if not getattr(samples, "names", ()):
+            low, high = panel.get_ylim()
+            top, sides = high - _EDGE * (high - low), np.clip([x.min(), x.max()], *panel.get_xlim())
             panel.text(
-                0.5 * (x.min() + x.max()), y.max(), f"{100.0 * samples.chance(region).value:.3g} %",
-                ha="center", va="bottom", clip_on=True, zorder=5,
+                sides.mean(), min(y.max(), top), f"{100.0 * samples.chance(region).value:.3g} %",
+                ha="center", va="bottom" if y.max() < top else "top", clip_on=True, zorder=5,
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 1.0},
             )  # fmt: skip
 
