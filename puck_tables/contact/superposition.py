@@ -30,8 +30,7 @@ _NODES = 0.5 * (1.0 + np.tanh(_T))
 _SHARES = np.cosh(_AT) / np.cosh(_T) ** 2
 _SHARES /= _SHARES.sum()
 # and farther from there than half their width they are analytic
-_FAR_NODES, _FAR_SHARES = np.polynomial.legendre.leggauss(14)
-_FAR_NODES, _FAR_SHARES = 0.5 * (1.0 + _FAR_NODES), 0.5 * _FAR_SHARES
+_FAR_NODES, _FAR_SHARES = 0.5 * (np.polynomial.legendre.leggauss(14) + np.array([[1.0], [0.0]]))
 _CHUNK = 64  # points at once: their rules fit the cache
 _KEPT = 100_000  # angles at once whose integrals are kept: 50 MB in all at most
 

@@ -143,22 +143,7 @@ def spec_of(
             )
     if len(set(wanted)) < len(wanted):
         raise InputError(f"free names {', '.join(wanted)}: name each parameter once")
-    for name in (*wanted, *known):
-        if name in NODES:
-            raise InputError(
-                f"{name} is found where slip speeds are given (--slip-speeds, slip_speeds=), "
-                "and cannot be named"
-            )
-        if name == "readout" and not rows:
-            raise InputError(
-                "readout is of a rolling shutter: say which y (m) the first and the last line "
-                "of the picture show (--rows, rows=)"
-            )
-        if name in OF_IMPACTS and not impacts:
-            raise InputError(
-                f"{name} is a number of impacts, which are not looked for: ask for them "
-                "(--impacts, impacts=True)"
-            )
+    _refuse_unasked((*wanted, *known), impacts, rows)
     for numbers, what in ((priors, "prior"), (bounds, "bounds"), (start, "start")):
         for name in numbers:
             refuse_unknown(name, ALL, what)
@@ -187,6 +172,26 @@ def spec_of(
         puck, wanted, known, {n: prior_of(n, v, every) for n, v in priors.items()}, ranges, begun,
         freed, base=base,
     )  # fmt: skip
+
+
+def _refuse_unasked(named: Collection[str], impacts: bool, rows: bool) -> None:
+    """Refuse numbers of slip speeds, of a rolling shutter or of impacts that nobody asked for."""
+    for name in named:
+        if name in NODES:
+            raise InputError(
+                f"{name} is found where slip speeds are given (--slip-speeds, slip_speeds=), "
+                "and cannot be named"
+            )
+        if name == "readout" and not rows:
+            raise InputError(
+                "readout is of a rolling shutter: say which y (m) the first and the last line "
+                "of the picture show (--rows, rows=)"
+            )
+        if name in OF_IMPACTS and not impacts:
+            raise InputError(
+                f"{name} is a number of impacts, which are not looked for: ask for them "
+                "(--impacts, impacts=True)"
+            )
 
 
 def _round(puck: Puck) -> Puck:

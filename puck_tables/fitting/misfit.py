@@ -247,16 +247,15 @@ def _by_pressure(result: Estimate, problem: Problem) -> _Reading:
         free, puck = (*spec.free, *more), replace(spec.puck, pressure=law_of(name))
         other = replace(problem, spec=replace(spec, puck=puck, free=free), tall=False)
         gain, numbers = _near(result, other)
-        inner = numbers.get("inner", 0.0)
-        if more and inner < _AS_A_RING:
+        inner = numbers.get("inner", 1.0)
+        law = "ring" if more and inner > _AS_A_RING else name
+        words = f"with the base pressed as {law}: say so (--pressure {law})"
+        if more and law == name:
             words = (
                 f"with the base pressed outside {inner:.2g} r alone: find where (--pressure {name} "
                 f"--free {','.join(free)})"
             )
-        else:
-            law = "ring" if more else name
-            words = f"with the base pressed as {law}: say so (--pressure {law})"
-        if gain > best.gain:
+        if gain > best.gain and law != spec.puck.body.law.name:
             best = _Reading(words, gain, same=not more)
     return best
 
