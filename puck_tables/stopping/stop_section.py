@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, real
+from puck_tables._core.waiting import Progress
 from puck_tables.accuracy.method_errors import COARSEST
 from puck_tables.contact.laws import Law
 from puck_tables.errors import AccuracyError
@@ -36,7 +37,6 @@ from puck_tables.table.friction_section import FINEST_ACCURACY, FrictionSection
 from puck_tables.table.law_record import can_be_known, known
 from puck_tables.table.section_table import SectionTable
 from puck_tables.table.slip_spline import GRADING_POWER, LawAxis, sides_of, slip_spline
-from puck_tables.table.table import Progress
 from puck_tables.table.table_store import fetch
 
 FINEST_SECTION = 1e-10  # as fine as stops are looked up; beyond, they are integrated
