@@ -8,7 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.options import FILE, Outputs, PuckChoice, number, outputs, packed, puck_options
+from puck_tables.cli.options import (
+    FILE,
+    Outputs,
+    PuckChoice,
+    PuckCommand,
+    number,
+    outputs,
+    packed,
+    puck_options,
+)
 from puck_tables.cli.printing import progress
 from puck_tables.cli.scene_run import SceneChoice, scene_options, scene_tables
 from puck_tables.cli.values import Vector, named, not_none, number_or_text
@@ -21,7 +30,7 @@ _ON_BOARDS = ("pocket", "puck", "striker", "hits", "max_impacts", "odds", "withi
 _SCATTERS = {"heading": "rad", "speed": "1", "w0": "rad/s"}  # for --odds
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.option("--target", "targets", type=Vector("m"), multiple=True, help="Where to stop, in m "
               "from the launch, like 2,0.1; in a scene, on the board.")  # fmt: skip
 @click.option("--targets", "targets_file", type=FILE, metavar="FILE",

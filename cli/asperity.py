@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import click
-from puck_tables.cli.options import FILE, Outputs, number, outputs
+from puck_tables.cli.options import FILE, Outputs, PuckCommand, number, outputs
 from puck_tables.cli.printing import note, progress
 from puck_tables.cli.values import RangeParam
 
@@ -17,7 +17,7 @@ DEFAULT_COUNT, DEFAULT_TOP = 501, 2.5
 MAX_SPEEDS = 1_000_000  # each a row of the answer
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @number("--amplitude", "m", default=1e-6, show_default=True, help="a in m.")
 @number("--wavelength", "m", default=2e-5, show_default=True, help="2 pi b in m.")
 @number("--load", "N", default=1.0, show_default=True, help="-Y in N.")

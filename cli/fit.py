@@ -11,6 +11,7 @@ from puck_tables.cli.options import (
     FILE,
     RESULTS,
     Outputs,
+    PuckCommand,
     body_options,
     number,
     outputs,
@@ -59,7 +60,7 @@ def read_all(files: Iterable[Path], how: Mapping[str, Any]) -> list[Track]:
     return [track for file in files for track in read_tracks(file, **how)]
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="FILE...")
 @track_options
 @outputs("Save all tracks in m, s and rad: .csv, .h5, .json, .jsonl (puck fit reads these) or "
@@ -132,7 +133,7 @@ def _held_out(text: str, option: str) -> float | list[str]:
     return share if isinstance(share, float) else names(text, option)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="TRACK...")
 @track_options
 @packed(

@@ -14,6 +14,7 @@ import signal
 import sys
 from collections.abc import Iterator
 from functools import partial
+from itertools import chain
 from typing import Any
 
 import click
@@ -26,7 +27,6 @@ from puck_tables.cli.reference import compare, export, limit_surface, reference
 from puck_tables.cli.simulate import explore, scene, simulate
 from puck_tables.cli.sweep import sweep
 from puck_tables.cli.tables import build_tables, info, tables, tradeoff, validate, warm_up
-from puck_tables.cli.values import questioned
 
 from puck_tables._core.waiting import watchers
 from puck_tables._version import __version__
@@ -145,8 +145,5 @@ def main() -> None:
     del endings.last_words[1:]
 
 
-for _commands in SECTIONS.values():
-    for _command in _commands:
-        if _command.callback is not None:
-            _command.callback = questioned(_command.callback)
-        main.add_command(_command)
+for _command in chain.from_iterable(SECTIONS.values()):
+    main.add_command(_command)

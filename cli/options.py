@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from collections.abc import Callable, Container, Iterable
 from dataclasses import asdict, dataclass
 from functools import wraps
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from puck_tables.cli.printing import note, say
-from puck_tables.cli.values import NumberParam, laws, not_none
+from puck_tables.cli.values import DOUBTS, SAID, NumberParam, laws, not_none
 
 from puck_tables._core.doubts import MOST_FRICTION, OF_A_PUCK
 from puck_tables.errors import InputError
@@ -30,6 +31,37 @@ SCALED = "delta", "decel"  # in place of height, friction and gravity
 RESULTS = ".h5, .csv, .json, .jsonl or .parquet"
 
 FILE = click.Path(readable=False, path_type=Path)
+
+
+class PuckCommand(click.Command):
+    """A command that questions its numbers at its end, and takes no option of one value twice."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Read what is given, each option once unless it may be repeated."""
+        *_, order = self.make_parser(ctx).parse_args(list(args))
+        for one, times in Counter(order).items():
+            if (
+                times > 1 and isinstance(one, click.Option) and not one.multiple
+                and (one.secondary_opts or not one.is_flag)  # a flag says the same again
+            ):  # fmt: skip
+                flag = "/".join([*one.opts[:1], *one.secondary_opts])
+                raise InputError(f"{flag} is given twice: give it once")
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run it, and question its numbers; wrong usage is said alone."""
+        from puck_tables._core.doubts import question, unquestioned
+
+        doubts = ctx.meta.pop(DOUBTS, [])
+        try:
+            with unquestioned({number for _, number, *_ in ctx.meta.pop(SAID, [])}):
+                return super().invoke(ctx)
+        except click.UsageError:
+            doubts = []
+            raise
+        finally:
+            for one in doubts:
+                question(*one)
 
 
 def number(

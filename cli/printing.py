@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
-Progress = Callable[[int, int], None]
+from puck_tables._core.waiting import Progress
+
 SILENCE, BETWEEN_LINES = 2.0, 10.0  # s, where stderr is no terminal
 
 

@@ -17,6 +17,7 @@ from puck_tables.cli.options import (
     RESULTS,
     Outputs,
     PuckChoice,
+    PuckCommand,
     body_options,
     number,
     outputs,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from puck_tables.reference.floor_reaction import FloorFriction
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.argument("files", type=FILE, nargs=-1, required=True, metavar="THEIRS...")
 @packed(
     "how", dict,
@@ -91,7 +92,7 @@ def compare(
     out.report(result)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.argument("case", required=False, shell_complete=cases)
 @number("--dt", "s", help="Time between two frames, s.")
 @number("--fps", help="Frames a second.")
@@ -161,7 +162,7 @@ def _with_columns(result: Answer | FloorFriction) -> dict[str, Any]:
     return {**result.summary(), "columns": json.loads(encode(result.dataset()))["columns"]}
 
 
-@click.command("limit-surface")
+@click.command("limit-surface", cls=PuckCommand)
 @click.option("--points", type=click.IntRange(5, 1_000_001),
               help="How many slip angles.  [default: 181; with --base 31]")  # fmt: skip
 @packed("choice", PuckChoice, *puck_options(mass=True))
@@ -185,7 +186,7 @@ def limit_surface(points: int | None, choice: PuckChoice, out: Outputs) -> None:
     click.echo(surface.explain(), err=True)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.option("--language", required=True, metavar="NAME",
               help="c, js or python; of a scene c or js.")  # fmt: skip
 @click.option("--target", metavar="MACHINE", help="Of a scene in C: x86_64- or aarch64- before "

@@ -14,6 +14,7 @@ from puck_tables.cli.options import (
     FILE,
     Outputs,
     PuckChoice,
+    PuckCommand,
     number,
     outputs,
     packed,
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from puck_tables.result import TimedResult
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.option("--fit", "fit_path", type=FILE, metavar="FILE",
               help="The puck and the launch that 'puck fit -o FILE.json' found.")  # fmt: skip
 @click.option("--track", help="Which track of --fit, by its name or number from 1.")
@@ -123,7 +124,7 @@ def _from_fit(
     return puck_and_launch(path, track)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @scene_options
 @outputs("Only write the page there.", plot=False, file="FILE.html")
 @click.pass_context

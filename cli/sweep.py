@@ -14,6 +14,7 @@ from puck_tables.cli.endings import last_words
 from puck_tables.cli.options import (
     Outputs,
     PuckChoice,
+    PuckCommand,
     number,
     outputs,
     packed,
@@ -216,7 +217,7 @@ class Whole:
             say(result.explain(), err=True)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @number("--w0", "rad/s", RangeParam, help="Launch spin in rad/s.")
 @number("--speed", "m/s", RangeParam, help="Launch speed in m/s, along x without --heading.")
 @number("--heading", "rad", RangeParam, help="Direction of the launch from x, in rad.")

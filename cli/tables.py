@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import click
-from puck_tables.cli.options import FILE, Outputs, number, outputs, tables_named
+from puck_tables.cli.options import FILE, Outputs, PuckCommand, number, outputs, tables_named
 from puck_tables.cli.printing import note, progress, say
 from puck_tables.cli.values import laws
 
@@ -25,7 +25,7 @@ from puck_tables.report.lines_and_tables import columns
 FAILED = 3  # exit status: 1 and 2 are those of errors and of wrong usage
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.option("--quick", is_flag=True, help="Fewer repeats and points: under a minute.")
 @click.option("-o", "--output", "files", type=FILE, metavar="FILE", multiple=True,
               help="Save everything: .h5, or .csv.  May be given twice.")  # fmt: skip
@@ -53,7 +53,7 @@ def tradeoff(quick: bool, files: tuple[Path, ...], out: Outputs) -> None:
     click.echo(measured)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.argument("file", type=FILE, required=False)
 def validate(file: Path | None) -> None:
     """Judge a table by independent routes.
@@ -76,7 +76,7 @@ def validate(file: Path | None) -> None:
         raise SystemExit(FAILED)
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.argument("file", type=FILE, required=False)
 def info(file: Path | None) -> None:
     """Say what a table holds, how good it is, and whether its digest is right.
@@ -86,7 +86,7 @@ def info(file: Path | None) -> None:
     say("\n\n".join(map(str, tables_named(file))))
 
 
-@click.command("build-tables")
+@click.command("build-tables", cls=PuckCommand)
 @click.option("--kind", type=click.Choice(["resultants", "stops"]), default="resultants",
               show_default=True, help="Friction resultants in full contact, or stops and the way "
               "to them.")  # fmt: skip
@@ -170,7 +170,7 @@ def _file_stem(name: str) -> str:
     return re.sub(r"[^\w.+-]", "-", name.removesuffix(".csv"))
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON list.")
 @click.option("--remove", "names", metavar="NAME", multiple=True, help="Remove a kept table.")
 @click.option("--clean", is_flag=True, help="Remove all kept tables.")
@@ -266,7 +266,7 @@ def _lines(entries: list[dict[str, Any]]) -> str:
     return "\n".join([columns(heads, rows), *kept])
 
 
-@click.command()
+@click.command(cls=PuckCommand)
 def warm_up() -> None:
     """Compile what games and services call, once for this machine.
 

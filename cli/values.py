@@ -5,7 +5,6 @@ And what a shell offers at the Tab key where click alone cannot know it: scenes,
 
 from __future__ import annotations
 
-import functools
 import math
 import re
 from collections.abc import Callable, Iterable
@@ -122,28 +121,6 @@ class Times(NumberParam):
         if count > MAX_TIMES:
             self.fail(f"'{value}' asks for too many states: at most 1e7", param, ctx)
         return tuple(start + (stop - start) * i / (count - 1) for i in range(count))
-
-
-def questioned(run: Callable[..., Any]) -> Callable[..., Any]:
-    """A command that questions its numbers at its end; wrong usage is said alone."""
-
-    @functools.wraps(run)
-    def command(*args: Any, **named: Any) -> Any:
-        from puck_tables._core.doubts import question, unquestioned
-
-        meta = click.get_current_context().meta
-        doubts = meta.pop(DOUBTS, [])
-        try:
-            with unquestioned({number for _, number, *_ in meta.pop(SAID, [])}):
-                return run(*args, **named)
-        except click.UsageError:
-            doubts = []
-            raise
-        finally:
-            for one in doubts:
-                question(*one)
-
-    return command
 
 
 def not_none(values: dict[str, Any]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy.typing as npt
 
-from puck_tables._core.executor import Progress
+from puck_tables._core.waiting import Progress
 from puck_tables.errors import InputError
 from puck_tables.wrench.verbs_of_friction import VerbsOfFriction
 

@@ -9,12 +9,14 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import click
 import numpy as np
 import pandas
 import pytest
 import xarray
 from click.testing import Result
 from commands import invoke
+from puck_tables.cli.main import main
 from pucks import simulate
 
 from puck_tables import Puck, Table
@@ -246,6 +248,25 @@ V0 = ["simulate", "--v0", "1,0"]
 def test_bad_input_is_one_sentence_and_writes_nothing(folder, arguments, words):
     refused(invoke(*arguments), 2, *words)
     assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", main.commands)
+def test_an_option_of_one_value_is_taken_once(name: str):
+    commands = [([name], main.commands[name])]
+    if isinstance(commands[0][1], click.Group):
+        commands = [([name, one], command) for one, command in commands[0][1].commands.items()]
+    for words, command in commands:
+        for option in command.params:
+            if isinstance(option, click.Option):
+                flags = [option.opts[0], [*option.opts, *option.secondary_opts][-1]]
+                value = [] if option.is_flag else ["1"]
+                both = [word for flag in flags for word in (flag, *value)]
+                once = option.secondary_opts or not option.is_flag
+                result = invoke(*words, *both, "--help")
+                if option.multiple or not once:
+                    assert result.exit_code == 0
+                else:
+                    refused(result, 2, f"{option.opts[0]}", "is given twice: give it once")
 
 
 def test_pictures_without_matplotlib_say_what_to_install(monkeypatch: pytest.MonkeyPatch):

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from queue import Empty, SimpleQueue
 from typing import Any
 
-Progress = Callable[[int, int], None]
+from puck_tables._core.waiting import Progress
 
 _FIRST_SLICE, _GROWTH = 4, 8.0  # items; times the slice before
 _SLICE_TIME = 0.2  # s, about, of a slice: between two Ctrl-C is heard

@@ -24,8 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from puck_tables._core.digest import program
-from puck_tables._core.executor import Progress
-from puck_tables._core.waiting import watched
+from puck_tables._core.waiting import Progress, watched
 from puck_tables.bulk.store import Store
 from puck_tables.bulk.store_folder import sibling_of
 from puck_tables.bulk.work import Tally, Work, same_program

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from puck_tables._core.arrays import checked_progress, instance, whole
-from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
+from puck_tables._core.waiting import Progress
 from puck_tables.bulk.work import Tally, Work, in_memory
 from puck_tables.errors import InputError, OutputError
 from puck_tables.io.columns import Dataset

@@ -21,8 +21,9 @@ from typing import Any
 import numpy as np
 
 from puck_tables._core.arrays import checked_threads
-from puck_tables._core.executor import Progress, keep_on, run_chunks
+from puck_tables._core.executor import keep_on, run_chunks
 from puck_tables._core.own_folder import say
+from puck_tables._core.waiting import Progress
 from puck_tables._version import __version__
 from puck_tables.bulk.store_folder import DIGEST, shared, taken
 from puck_tables.bulk.work import Columns, Tally, Work

@@ -17,7 +17,8 @@ import numpy.typing as npt
 
 from puck_tables._core.arrays import checked_threads
 from puck_tables._core.digest import program, work_digest
-from puck_tables._core.executor import Progress, run_chunks
+from puck_tables._core.executor import run_chunks
+from puck_tables._core.waiting import Progress
 from puck_tables.errors import InputError
 from puck_tables.io.columns import Dataset
 from puck_tables.result import Result

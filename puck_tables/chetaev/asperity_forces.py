@@ -15,7 +15,6 @@ force π/w), whose mean is taken instead; of 2000 hops if there is no cycle.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import ClassVar, NamedTuple
 
@@ -23,6 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, checked_progress, finite_array, instance, shown
+from puck_tables._core.waiting import Progress
 from puck_tables.chetaev.wavy_support import Asperity, landing, on_support
 from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import InputError
@@ -133,7 +133,7 @@ class AsperityCurve(Result):
 
 
 def asperity_curve(
-    asperity: Asperity, speed: npt.ArrayLike, progress: Callable[[int, int], None] | None = None
+    asperity: Asperity, speed: npt.ArrayLike, progress: Progress | None = None
 ) -> AsperityCurve:
     """Horizontal force of a wavy one-sided support on a point: Chetaev 1960, section 5.
 

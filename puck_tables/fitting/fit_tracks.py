@@ -7,12 +7,13 @@ squares; its estimate is judged, and what was found is reported.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
 from puck_tables._core.arrays import instance
+from puck_tables._core.waiting import Progress
 from puck_tables.film.film import Track
 from puck_tables.fitting.checked_spec import spec_of, variants_of, with_law
 from puck_tables.fitting.coupled_fit import Impact, couple, impacts_apart, impacts_coupled, not_met
@@ -49,7 +50,6 @@ from puck_tables.fitting.slowing import over_speeds
 from puck_tables.kernels.patience import compiled_at_once
 from puck_tables.puck import Puck
 
-Progress = Callable[[int, int], None]
 _GUESS = 1e-3  # of the track: noise to begin with where differences tell none
 _MUCH = 0.1  # of the frames, left out at the ends
 

@@ -17,7 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, real
-from puck_tables._core.executor import Progress, run_chunks
+from puck_tables._core.executor import run_chunks
+from puck_tables._core.waiting import Progress
 from puck_tables.accuracy.method_errors import COARSEST, UNITS, Selection, select
 from puck_tables.accuracy.methods import (
     INTEGRATED,

@@ -27,6 +27,7 @@ from numpy.polynomial import chebyshev
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.executor import run_chunks
+from puck_tables._core.waiting import Progress
 from puck_tables.contact import quadrature
 from puck_tables.contact.closed_form import moment_balance
 from puck_tables.contact.integrals import slip_direction
@@ -55,7 +56,6 @@ from puck_tables.stopping.stop_values import STOPS, StopValues
 from puck_tables.table.build import Goal, built
 from puck_tables.table.check import Accuracy, Check, CheckReport, compared
 from puck_tables.table.friction_section import friction_ratios
-from puck_tables.table.table import Progress
 
 _GOAL = Goal(1e-10, 1e-11, "in units of Q/(f g) and Q^2/(f g)", 0.62, 1 << 12)
 _CHUNK = 64  # launches at once, of integrations

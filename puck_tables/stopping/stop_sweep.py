@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, one_velocity
-from puck_tables._core.executor import Progress
 from puck_tables._core.memory import check_memory
 from puck_tables._core.own_folder import say
+from puck_tables._core.waiting import Progress
 from puck_tables.bulk.finish import Doing, finish
 from puck_tables.bulk.spreads import checked_samples
 from puck_tables.bulk.work import Columns, Tally, Work

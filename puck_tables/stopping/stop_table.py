@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Self
 
+from puck_tables._core.waiting import Progress
 from puck_tables.stopping.stop_values import StopValues
 from puck_tables.table.check import CheckReport
-from puck_tables.table.table import Progress
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -14,6 +14,7 @@ import numpy as np
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.lazy import report_of
+from puck_tables._core.waiting import Progress
 
 
 @dataclass(frozen=True)
@@ -151,7 +152,7 @@ class Route(NamedTuple):
 
 def judged(
     source: str, tolerance: float, routes: Sequence[Route],
-    progress: Callable[[int, int], None] | None = None, second: str = "delta",
+    progress: Progress | None = None, second: str = "delta",
 ) -> CheckReport:  # fmt: skip
     """The report of a table by all these routes, one after the other.
 

@@ -19,6 +19,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.waiting import Progress
 from puck_tables.contact import one_sided
 from puck_tables.contact.closed_form import Resultants, checked_delta
 from puck_tables.contact.laws import HOMOGENEOUS, Law, law_of
@@ -33,7 +34,6 @@ from puck_tables.table.section_table import SectionTable
 from puck_tables.table.singular_lines import lines_of, opening_angle, refuse_height, tall_resultants
 from puck_tables.table.slip_spline import GRADING_POWER, LawAxis, SlipSpline, sides_of, slip_spline
 from puck_tables.table.spline_fit import height_terms, ratios_at
-from puck_tables.table.table import Progress
 from puck_tables.table.table_store import fetch
 
 RATES_ACCURACY = 1e-9  # motions differentiated with it err by at most 1e-8

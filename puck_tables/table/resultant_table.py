@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
+from puck_tables._core.waiting import Progress
 from puck_tables.contact import quadrature
 from puck_tables.contact.closed_form import Resultants, checked_delta, moment_balance
 from puck_tables.contact.integrals import checked_phi, slip_direction
@@ -28,7 +29,7 @@ from puck_tables.table.check import Accuracy, CheckReport, Route, judged
 from puck_tables.table.section_table import LawTable
 from puck_tables.table.slip_spline import GRADING_POWER, LawAxis
 from puck_tables.table.spline_fit import height_terms, sided_coefficients
-from puck_tables.table.table import Progress, kinds
+from puck_tables.table.table import kinds
 
 Tell = Callable[[int], None]
 

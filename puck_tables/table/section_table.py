@@ -11,11 +11,12 @@ from typing import ClassVar
 import numpy as np
 
 from puck_tables._core.arrays import FloatArray
+from puck_tables._core.waiting import Progress
 from puck_tables.contact.laws import Law
 from puck_tables.io.columns import Variable
 from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.slip_spline import LawAxis, SlipSpline
-from puck_tables.table.table import Progress, Table
+from puck_tables.table.table import Table
 
 
 @dataclass(frozen=True, eq=False, repr=False)

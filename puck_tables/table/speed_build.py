@@ -10,6 +10,7 @@ import numpy as np
 
 from puck_tables._core.arrays import rounded_up
 from puck_tables._core.executor import run_chunks
+from puck_tables._core.waiting import Progress
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law as PressureLaw
 from puck_tables.contact.laws import law_of
@@ -22,7 +23,6 @@ from puck_tables.table.build import checked_accuracy
 from puck_tables.table.check import Accuracy
 from puck_tables.table.speed_grid import breaks_of, is_pile, patches_of, rays_under
 from puck_tables.table.speed_patch import FilledPatch, Law
-from puck_tables.table.table import Progress
 
 DEFAULT_ACCURACY = 1e-6  # of f
 FINEST_ACCURACY = 1e-13  # of f: finer is rounding

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray, broadcast
+from puck_tables._core.waiting import Progress
 from puck_tables.contact.closed_form import Resultants, moment_balance, pressure_tilt
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.integrals import PatchIntegrals, checked_phi, slip_direction
@@ -31,7 +32,7 @@ from puck_tables.table.check import CheckReport, Route, judged
 from puck_tables.table.speed_build import largest_f, tabulated
 from puck_tables.table.speed_grid import RayPatch, SlipPatch, is_pile, patches_of, rays_under
 from puck_tables.table.speed_patch import quintic_coefficients, truth_at
-from puck_tables.table.table import Progress, Table
+from puck_tables.table.table import Table
 
 IntArray = npt.NDArray[np.int64]
 

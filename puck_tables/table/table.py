@@ -8,7 +8,7 @@ tables are saved, read, judged and refused is the same for all.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cache
 from importlib.resources import files
@@ -20,12 +20,11 @@ import numpy as np
 from puck_tables._core.arrays import FloatArray, instance, shown
 from puck_tables._core.lazy import above, names_above
 from puck_tables._core.safe_write import write_bytes
+from puck_tables._core.waiting import Progress
 from puck_tables.errors import InputError, OutputError, TableError
 from puck_tables.io.columns import Variable
 from puck_tables.table.check import Accuracy, CheckReport
 from puck_tables.table.file import AGAIN, decode, encode, read_content
-
-Progress = Callable[[int, int], None]
 
 _KIND = "table of "  # how the package says where the class of a kind stands
 

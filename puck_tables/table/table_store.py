@@ -17,7 +17,7 @@ from typing import Any, TypeVar, cast, overload
 from puck_tables._core.arrays import checked_progress, positive, real
 from puck_tables._core.own_folder import make_private, say, user_cache
 from puck_tables._core.sources import source_digest
-from puck_tables._core.waiting import watched
+from puck_tables._core.waiting import Progress, watched
 from puck_tables.contact.friction_laws import FrictionLaw
 from puck_tables.contact.laws import Law
 from puck_tables.contact.speed_law import SpeedLaw
@@ -25,7 +25,7 @@ from puck_tables.errors import OutputError, TableError
 from puck_tables.table.law_record import known, plain
 from puck_tables.table.resultant_table import ResultantTable
 from puck_tables.table.speed_table import SpeedTable
-from puck_tables.table.table import Progress, Table
+from puck_tables.table.table import Table
 
 AnyTable = TypeVar("AnyTable", bound=Table)
 MOST_ALIKE = 200  # files, some 100 kB each: a sweep over many heights shall not fill the disk

@@ -18,6 +18,7 @@ from typing import ClassVar
 import numpy as np
 
 from puck_tables._core.executor import usable_cores
+from puck_tables._core.waiting import Progress
 from puck_tables._version import __version__
 from puck_tables.accuracy.method_errors import MeasuredMethod
 from puck_tables.io.columns import Dataset, variable
@@ -65,7 +66,7 @@ class TradeOff(Result):
 
 
 @compiled_at_once()
-def measure(quick: bool = False, progress: Callable[[int, int], None] | None = None) -> TradeOff:
+def measure(quick: bool = False, progress: Progress | None = None) -> TradeOff:
     """Measure accuracy against cost of every method of answering, on one thread of this machine.
 
     ``quick``: fewer repeats and points.  Errors are against :mod:`puck_tables.tradeoff.truth`.

@@ -19,7 +19,7 @@ from puck_tables._core.arrays import (
     real,
     whole,
 )
-from puck_tables._core.executor import Progress
+from puck_tables._core.waiting import Progress
 from puck_tables.errors import InputError
 from puck_tables.scene.scene_spec import SceneSpec
 from puck_tables.world.aimed import BoardAim, aimed

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Self
 
 import numpy.typing as npt
 
-from puck_tables._core.executor import Progress
 from puck_tables._core.fields import of
+from puck_tables._core.waiting import Progress
 from puck_tables.motion.puck_spec import PuckSpec
 from puck_tables.puck import Puck
 from puck_tables.scene.library import find_scene
