@@ -139,7 +139,11 @@ def friction(
     m = sums(floor_map, ux, uy, w)
     if hole:
         m = m - sums(floor_map, ux, uy, w, hole)
-    m = m / (math.pi * (1.0 - hole * hole))
+    return under_linear_load(m / (math.pi * (1.0 - hole * hole)), lever)
+
+
+def under_linear_load(m: np.ndarray, lever: float) -> np.ndarray:
+    """Force and moment from sums over a level load of 1, ``lever`` as of :func:`friction`."""
     b = np.linalg.solve(np.eye(2) - lever * np.array([[m[2], m[3]], [m[4], m[5]]]), lever * m[:2])
     return np.array([
         m[0] + b @ m[2:4], m[1] + b @ m[4:6], m[4] - m[3] + b @ m[6:8],

@@ -17,10 +17,10 @@ def puck_at(x: float, y: float, velocity: Any = None, spin: float = 0.0, **how: 
     return pt.Puck(launch=pt.Launch(velocity, spin, (x, y)), **kept)
 
 
-def cushions(side: float = 0.6, restitution: float = 0.8) -> list[pt.Wall]:
+def cushions(side: float = 0.6, restitution: float = 0.8, **rim: float) -> list[pt.Wall]:
     """Four around a square."""
     return [
-        pt.Wall((-side * x, -side * y), normal=(x, y), restitution=restitution)
+        pt.Wall((-side * x, -side * y), normal=(x, y), restitution=restitution, **rim)
         for x, y in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
     ]
 

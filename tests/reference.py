@@ -46,6 +46,7 @@ _D_SLIDING = 4 / 9 * _terms((4, -5, 0), (-2, 2, -1), (0, 3, 1))
 
 def sums(s: float) -> tuple[float, float, float]:
     """Elliptic integrals of friction at s = v/(rω); as power series where their terms cancel."""
+    s = 1.0 - 1e-15 if s == 1.0 else s  # at 1 itself K is infinite, times 0
     if s < 0.25 or s > 4.0:
         powers = (s * s if s < 1.0 else 1.0 / (s * s)) ** np.arange(25)
         if s < 1.0:
@@ -67,6 +68,10 @@ def sums(s: float) -> tuple[float, float, float]:
 def friction(vx: float, vy: float, rim: float, delta: float) -> tuple[float, float, float]:
     """Accelerations of vx, vy and rω for J = 1."""
     v = math.hypot(vx, vy)
+    if abs(rim) <= 1e-13 * v:
+        return (-vx / v, -vy / v, 0.0) if v else (0.0, 0.0, 0.0)
+    if v <= 1e-13 * abs(rim):
+        return 0.0, 0.0, math.copysign(4.0 / 3.0, -rim)
     q = math.hypot(v, rim)
     sine, cosine = abs(rim) / q, v / q
     a, b, d = sums(cosine / sine)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from puck_tables import Scene
+from puck_tables import Floor, Launch, Puck, Scene
 from puck_tables.results import Map, Run
 
 
@@ -25,6 +26,15 @@ def made(tables: Any) -> Scene:
     if isinstance(tables, Scene):
         return tables
     return Scene.load(tables) if isinstance(tables, str | Path) else Scene.from_tables(tables)
+
+
+def end_of(
+    puck: Puck, floor: Floor | None = None, launch: Launch | None = None, **parts: Any
+) -> np.ndarray:
+    """When, where and how turned it comes to rest; the ledger closes."""
+    run = Scene(puck, floor or Floor(), launch or Launch(), **parts).simulate([0.0])
+    assert run.end == "at rest" and abs(run.energy_residual) < 1e-9
+    return np.array([run.end_time, *(run.last[name] for name in ("x", "y", "orientation"))])
 
 
 def two_ends_as_alone(ranged: Scene) -> None:

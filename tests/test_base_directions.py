@@ -44,7 +44,7 @@ def judge(base: Base, axes: Orthotropic, height: float, state: Any) -> np.ndarra
 @pytest.mark.parametrize(
     ("name", "fixed_to"),
     [
-        ("box", "floor"), ("bar", "body"), ("L", "floor"), ("frame", "body"),
+        ("L", "floor"), ("frame", "body"), thorough("box", "floor"), thorough("bar", "body"),
         *map(thorough, ("box", "bar", "L", "frame"), ("body", "floor") * 2),
     ],
 )  # fmt: skip

@@ -213,22 +213,6 @@ def test_tall_and_nearly_symmetric_bodies_end_in_no_direction(sides, height, reg
     assert run.regime == regime
 
 
-def test_mirror_images():
-    left = np.array([(0.0, 0.0), (0.1, 0.02), (0.05, 0.09)])
-    pucks = [
-        Puck(base=Base.polygon(corners), friction=0.3, height=0.03)
-        for corners in (left, (left * [1.0, -1.0])[::-1])
-    ]
-    one, other = (
-        puck.stop((1.0, side * 0.4), side * 9.0, tol=1e-10)
-        for puck, side in zip(pucks, (1.0, -1.0), strict=True)
-    )
-    unit = 1.0 / pucks[0].decel
-    assert abs(one.stop_time - other.stop_time) < 1e-9 * unit
-    np.testing.assert_allclose(one.stop_position, other.stop_position * [1, -1], atol=1e-9)
-    assert abs(one.body_angle + other.body_angle) < 1e-7
-
-
 def test_scales_of_length_mass_and_gravity():
     small = Puck(base=BOX, friction=0.3, height=0.04)
     large = Puck(

@@ -3,7 +3,6 @@
 import math
 import tomllib
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -11,7 +10,7 @@ import pytest
 from base_judge import Judge
 from golden.make_body_starts import BOX, K, LawJudge, stribeck
 from rarely import thorough
-from rays_judge import within
+from rays_judge import border, friction_of, sides, within
 
 from puck_tables import (
     Base,
@@ -29,7 +28,6 @@ from puck_tables import (
     Wall,
 )
 from puck_tables.contact.law_moments import law_moments, packed_law
-from puck_tables.contact.speed_law import SpeedLaw
 from puck_tables.errors import ContactError
 from puck_tables.kernels.base_clipping import whole_contour
 from puck_tables.kernels.base_friction import REACH, base_sums, packed
@@ -151,41 +149,26 @@ def whole(shape: Any) -> tuple[Any, int, int, float]:
     return shape, *whole_contour(shape, 0), shape[REACH]
 
 
-def quadrature(base: Base, cut: Any, state: Any, lever: float, friction: Any) -> Any:
-    """Force and torque by a fine grid over the base in the laboratory: f of each point, N = 1."""
-    x, y, angle, vx, vy, w = state
-    low, high = base.points().min(axis=0), base.points().max(axis=0)
-    n = 1500
-    px, py = np.meshgrid(
-        *(a + (np.arange(n) + 0.5) / n * (b - a) for a, b in zip(low, high, strict=True))
-    )
-    on = cut(px, py)
-    px, py = px[on] - base.middle[0], py[on] - base.middle[1]
+def judged(base: Base, state: Any, lever: float, friction: Any, borders: list[Any]) -> np.ndarray:
+    """Force and torque at N = 1 by points on rays; ``friction`` by place, with its ``borders``."""
+    x, y, angle, *slip = state
     c, s = math.cos(angle), math.sin(angle)
-    rx, ry = c * px - s * py, s * px + c * py
-    ux, uy = vx - w * ry, vy + w * rx
-    slip = np.hypot(ux, uy)
-    ex, ey = ux / slip, uy / slip
-    f = friction(x + rx, y + ry)
-    ones = np.ones_like(rx)
-    rows = np.stack([ones, rx, ry])
-    balance = rows @ rows.T
-    pull = np.stack([np.zeros(3), -(f * ex) @ rows.T * lever, -(f * ey) @ rows.T * lever])
-    load = np.linalg.solve(balance + pull, [1.0, 0.0, 0.0]) @ rows
-    fx, fy = -(f * load * ex).sum(), -(f * load * ey).sum()
-    return np.array([fx, fy, -(f * load * (rx * ey - ry * ex)).sum()])
+    turn, middle = np.array([[c, -s], [s, c]]), np.array(base.middle)
+    outlines = [((np.array(one) - middle) @ turn.T).tolist() for one in base.outlines]
+    discs = [(*turn @ (np.array(one[:2]) - middle), *one[2:]) for one in base.discs]
 
+    def inside(px: np.ndarray, py: np.ndarray) -> np.ndarray:
+        there = [sign * (np.hypot(px - cx, py - cy) < r) for cx, cy, r, sign in discs]
+        return within(outlines)(px, py) + sum(there) > 0
 
-CUTS: dict[str, Any] = {
-    "bar": lambda x, y: np.ones(x.shape, bool),
-    "L": lambda x, y: (y < 0.05) | (x < 0.05),
-    "frame": lambda x, y: ~((abs(x - 0.1) < 0.05) & (abs(y - 0.05) < 0.03)),
-    "feet": lambda x, y: np.any(
-        [np.hypot(x - a, y - b) < 0.01 for a, b in ((0.08, 0), (-0.05, 0.05), (-0.05, -0.05))],
-        axis=0,
-    ),
-    "washer": lambda x, y: (np.hypot(x, y) < 0.08) & (np.hypot(x, y) > 0.05),
-}
+    def local(px: np.ndarray, py: np.ndarray, ex: np.ndarray, ey: np.ndarray) -> Any:
+        f = friction(x + px, y + py)
+        return f * ex, f * ey
+
+    curves = [*(side for one in outlines for side in sides(one)), *(one[:3] for one in discs)]
+    for one in borders:  # seen from the puck
+        curves.append(tuple(np.subtract(one, (x, y, x, y) if len(one) == 4 else (x, y, 0.0))))
+    return friction_of(curves, inside, local, slip, lever, 24)
 
 
 STRIPS = Strips((-0.03, 0.02, 0.05), (0.2, 0.05, 0.3, 0.1), direction=0.7)
@@ -206,20 +189,22 @@ def on_patches(x: Any, y: Any) -> Any:
     return f
 
 
-FLOORS: dict[str, tuple[Floor, Any]] = {
-    "one": (Floor(), lambda x, y: np.full(x.shape, 0.2)),
-    "strips": (Floor(strips=STRIPS), on_strips),
+FLOORS: dict[str, tuple[Floor, Any, list[Any]]] = {
+    "one": (Floor(), lambda x, y: np.full(x.shape, 0.2), []),
+    "strips": (
+        Floor(strips=STRIPS), on_strips, [border(STRIPS.direction, b) for b in STRIPS.borders]
+    ),
     "patches": (
         Floor(patches=[Patch(0.05, corners=HOOK), *(Patch(0.3, (x, y), r) for x, y, r in ROUND)]),
-        on_patches,
+        on_patches, [*sides(HOOK), *ROUND],
     ),
-}
+}  # fmt: skip
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("floor", FLOORS)
 @pytest.mark.parametrize("name", BASES)
-def test_friction_is_that_of_a_grid_over_the_base(name: str, floor: str) -> None:
+def test_friction_is_that_of_points_over_the_base(name: str, floor: str) -> None:
     rng = np.random.default_rng(7)
     base = BASES[name]
     height = 1.9 * base.highest_lever / 0.3  # of which none of the frictions lifts it
@@ -228,11 +213,11 @@ def test_friction_is_that_of_a_grid_over_the_base(name: str, floor: str) -> None
         rng.normal(scale=0.05, size=(4, 2)), rng.uniform(0.0, 6.0, 4),
         rng.normal(size=(4, 2)), rng.normal(scale=15.0, size=4),
     ])  # fmt: skip
-    found = friction_at(Scene(puck, FLOORS[floor][0]), states)
+    surface, friction, borders = FLOORS[floor]
+    found = friction_at(Scene(puck, surface), states)
     for state, forces in zip(states.tolist(), found, strict=True):
-        wanted = quadrature(base, CUTS[name], state, 0.5 * height, FLOORS[floor][1])
-        gap = np.abs(forces - wanted) / [1.0, 1.0, base.reach]
-        assert gap.max() < 1.5e-4  # of the grid: a cell at the rim is in or out
+        wanted = judged(base, state, 0.5 * height, friction, borders)
+        assert (np.abs(forces - wanted) / [1.0, 1.0, base.reach]).max() < 1e-10
 
 
 def drawn_states(seed: int, count: int, spread: float) -> np.ndarray:
@@ -307,73 +292,6 @@ def test_a_law_is_integrated_as_exactly_as_a_constant() -> None:
                 own = base_sums(shape, ux, uy, w)
                 law = law_sums(*whole(shape), constant, ALIKE, ux, uy, w)
                 assert np.abs((np.array(law) - 0.3 * np.array(own)) / unit).max() < 1e-10
-
-
-STEEP = SpeedLaw([0.0, 0.3, 0.31, 30.0], [0.4, 0.4, 0.1, 0.1])
-
-
-def summed_from(cx: float, cy: float, w: float) -> np.ndarray:
-    """Force of a 0.2 × 0.1 box under the law, by polar coordinates about C, inside."""
-    nodes, weights = np.polynomial.legendre.leggauss(40)
-    corners = [math.atan2(y - cy, x - cx) for x in (-0.1, 0.1) for y in (-0.05, 0.05)]
-    at, total = np.asarray(STEEP.speeds) / abs(w), np.zeros(2)
-    meets = [math.atan2(y, x) for r in at for x, y in on_sides(cx, cy, r)]
-    share = 0.5 + 0.5 * nodes  # half powers of a circle that touches a side are cleared
-    way, part_of = share**2 * (3.0 - 2.0 * share), 3.0 * share * (1.0 - share) * weights
-    for low, high in pairwise(np.unique([*corners, -math.pi, math.pi, *meets])):
-        for angle, part in zip(low + (high - low) * way, (high - low) * part_of, strict=True):
-            c, s = math.cos(angle), math.sin(angle)
-            far = min((math.copysign(0.1, c) - cx) / c, (math.copysign(0.05, s) - cy) / s)
-            breaks = np.unique([0.0, *at[at < far], far])
-            half = 0.5 * np.diff(breaks)[:, None]
-            radius = breaks[:-1, None] + half * (1.0 + nodes)
-            inner = (
-                STEEP((abs(w) * radius).ravel()).reshape(radius.shape) * radius * half * weights
-            ).sum()
-            total += part * inner * math.copysign(1.0, w) * np.array([-s, c])
-    return total
-
-
-def on_sides(cx: float, cy: float, radius: float) -> list[tuple[float, float]]:
-    """Where a circle about C meets the sides of the box, from C."""
-    met = []
-    for x in (-0.1 - cx, 0.1 - cx):
-        if radius > abs(x):
-            y = math.sqrt(radius**2 - x**2)
-            met += [(x, one) for one in (-y, y) if -0.05 <= one + cy <= 0.05]
-    for y in (-0.05 - cy, 0.05 - cy):
-        if radius > abs(y):
-            x = math.sqrt(radius**2 - y**2)
-            met += [(one, y) for one in (-x, x) if -0.1 <= one + cx <= 0.1]
-    return met
-
-
-def test_a_law_that_bends_is_integrated_as_exactly_as_one_that_does_not() -> None:
-    shape = packed(Base.box(0.2, 0.1), 0.0)
-    contour = packed_law(*law_moments(STEEP, STEEP.pieces(30.0)[0]))
-    rng = np.random.default_rng(6)
-    for _ in range(12):
-        w = float(rng.choice([-1.0, 1.0])) * 10.0 ** float(rng.uniform(0.3, 1.2))
-        cx, cy = float(rng.uniform(-0.09, 0.09)), float(rng.uniform(-0.045, 0.045))
-        found = law_sums(*whole(shape), contour, ALIKE, w * cy, -w * cx, w)[:2]
-        assert np.abs(found - summed_from(cx, cy, w)).max() < 1e-10 * 0.4 * 0.02
-    nodes, weights = np.polynomial.legendre.leggauss(3)
-    x, y = (
-        (a * (np.arange(n)[:, None] + 0.5 + 0.5 * nodes) / n - 0.5 * a).ravel()
-        for a, n in ((0.2, 600), (0.1, 300))
-    )
-    part = np.outer(np.tile(weights, 300), np.tile(weights, 600)) * 0.25 * 0.02 / 180_000
-    for w, speed in ((0.4, 0.305), (-0.02, 0.3), (1e-3, 0.3102)):  # C far away, and farther
-        ux, uy = 0.6 * speed, 0.8 * speed
-        vx, vy = ux - w * y[:, None], uy + w * x
-        slip = np.hypot(vx, vy)
-        along = part * STEEP(slip.ravel()).reshape(slip.shape) / slip
-        truth = np.array([(along * vx).sum(), (along * vy).sum()])
-        found = law_sums(*whole(shape), contour, ALIKE, ux, uy, w)[:2]
-        assert np.abs(found - truth).max() < 1e-9 * 0.4 * 0.02
-        at_first = getattr(law_sums, "at_first", law_sums)
-        other = at_first(*whole(shape), contour, ALIKE, ux, uy, w)[:2]
-        assert np.abs(np.subtract(found, other)).max() < 1e-12 * 0.4 * 0.02
 
 
 @pytest.mark.parametrize("turn", [2.0 * math.pi, math.pi])
@@ -454,16 +372,9 @@ def test_a_stone_on_a_running_band_meets_a_wall_by_its_rim() -> None:
     assert abs(impact.x - 0.3) < 1e-9  # where they touch
 
 
-REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "wall": ({"walls": [Wall((1.0, 0.0), normal=(-1.0, 0.0))]}, "puck.radius is missing")
-}
-
-
-@pytest.mark.parametrize("name", REFUSED)
-def test_what_is_not_known_is_refused(name: str) -> None:
-    parts, words = REFUSED[name]
-    with pytest.raises(InputError, match=words):
-        Scene(Puck(base="box:0.2x0.1", friction=0.2, height=0.02), **parts)
+def test_a_base_meets_no_wall_without_a_rim() -> None:
+    with pytest.raises(InputError, match=r"puck.radius is missing"):
+        Scene(Puck(base="box:0.2x0.1", friction=0.2), walls=[Wall((1.0, 0.0), normal=(-1.0, 0.0))])
 
 
 def test_numbers_of_a_puck_on_a_base_are_checked() -> None:

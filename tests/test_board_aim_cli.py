@@ -14,8 +14,7 @@ from click.testing import Result
 from commands import invoke
 
 from puck_tables import Edge, Launch, Post, Puck, Scene
-from puck_tables.world import aimed
-from puck_tables.world.targets import odds_of
+from puck_tables.world import aimed, targets
 
 CURLING = ("--scene", "curling-take-out", "--puck", "yellow", "--target", "0.5,-0.5")
 BOX = ("--base", "box:20cmx10cm", "--friction", "0.3")
@@ -61,9 +60,10 @@ def test_odds_are_those_of_the_library(tmp_path: Path, monkeypatch: pytest.Monke
 
     def answered(*given: Any) -> Any:
         asked.append(given[2:])
-        return odds_of(*given[:-2], 400, given[-1]) if len(asked) == 1 else odds
+        return targets.odds_of(*given[:-2], 60, given[-1]) if len(asked) == 1 else odds
 
     monkeypatch.setattr(aimed, "odds_of", answered)
+    monkeypatch.setattr(targets, "_TRIED", 60)
     board = Scene(pucks=[Puck(0.03, friction=0.1)], edges=[Edge((0.82, 0.0), normal=(-1, 0))])
     (tmp_path / "table.toml").write_text(
         "[[puck]]\nradius = 0.03\nfriction = 0.1\n"

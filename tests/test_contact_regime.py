@@ -9,6 +9,7 @@ import pytest
 
 from puck_tables import resultants
 from puck_tables.contact import closed_form, is_full_contact, quadrature
+from puck_tables.contact.one_sided import critical_delta
 from puck_tables.errors import ContactError, InputError
 from puck_tables.motion import limit_angle
 
@@ -27,16 +28,13 @@ def test_contact_is_full_up_to_delta_one(scattered, corners):
     [(0.0, 1.0), (math.pi / 8, 1.01728890), (QUARTER, 1.15913851), (math.pi / 3, 1.95391704)],
 )
 def test_critical_height(phi, critical):
-    low, high = 0.0, 3.0
-    assert is_full_contact(phi, low) and not is_full_contact(phi, high)
-    while high - low > 1e-12:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if is_full_contact(phi, middle) else (low, middle)
-    assert abs(low - critical) <= 1e-8
+    line = float(critical_delta(phi))
+    assert abs(line - critical) <= 5e-9
+    assert is_full_contact(phi, line - 1e-11) and not is_full_contact(phi, line + 1e-11)
     # the compiled resultants draw the same line
-    resultants([phi, -phi], low - 1e-11)
+    resultants([phi, -phi], line - 1e-11)
     with pytest.raises(ContactError):
-        resultants(phi, high + 1e-11)
+        resultants(phi, line + 1e-11)
 
 
 def test_pure_spin_never_loses_contact():

@@ -94,13 +94,3 @@ def test_no_jump_where_one_cell_meets_the_next():
     delta = np.linspace(0.0, 1.0, u.size)
     below, above = (looked_up(table, np.nextafter(u, s * np.inf), delta) for s in (-1, 1))
     assert np.abs(above - below).max() <= 2e-15
-
-
-def test_on_the_limit_ratio_nothing_moves_away():
-    for delta in (0.0, 0.4, 1.0):
-        ratio = float(pt.motion.limit_ratio(delta))
-        run = simulate((1.0, 0.0), ratio, delta=delta, exact=True, frames=9)
-        assert run.regime == "D"
-        moving = run.speed > 0.0
-        assert moving[:-1].all()
-        np.testing.assert_allclose(run.spin[moving] / run.speed[moving], ratio, rtol=1e-9)

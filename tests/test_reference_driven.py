@@ -120,8 +120,7 @@ def on_floor(name: str, turning=lambda t: 0.0):
     def rates(t: float, y: np.ndarray) -> list[float]:
         turns = floor.get("turning", 0.0) + turning(t)
         ux, uy = y[3:5] - belt - turns * np.array([-y[1], y[0]])
-        rim, v = r * (y[5] - turns), math.hypot(ux, uy)
-        ax, ay, aw = friction(ux, uy, rim, delta) if rim else (-ux / v, -uy / v, 0.0)
+        ax, ay, aw = friction(ux, uy, r * (y[5] - turns), delta)
         return [*y[3:], pull[0] + j * ax, pull[1] + j * ay, j * aw / r]
 
     return rates

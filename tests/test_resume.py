@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from pucks import sweep
 from scenes import sweep_scene
+from test_one_store import content
 
 from puck_tables import Scene, Table, profile_law
 from puck_tables._core import digest as kept_work
@@ -49,10 +50,6 @@ CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
     (OTHER, {"method": "adaptive"}), (OTHER, {"method": "rk4"}),
     (OTHER, {"pressure": lambda: profile_law([0.0, 1.0], [1.0, 0.5])}),
 ]  # fmt: skip
-
-
-def content(store: Path) -> dict[str, bytes]:
-    return {str(path): path.read_bytes() for path in store.rglob("*") if path.is_file()}
 
 
 def made(arguments: dict[str, Any]) -> dict[str, Any]:

@@ -50,17 +50,6 @@ def test_options_are_numbers_of_the_scene():
     )
 
 
-def test_every_error_is_told_at_once(tmp_path):
-    file = tmp_path / "bad.toml"
-    file.write_text("[puck]\nradius = -1\nhight = 2\nfriction = 'a'\n[[wall]]\npoint=[0]\n")
-    for command in (("scene", "check"), ("simulate", "--scene"), ("sweep", "--scene")):
-        result = invoke(*command, file)
-        assert result.exit_code == 2
-        for part in ("puck.radius = -1", "puck.hight", "puck.friction", "wall[0].point", "> 0 m"):
-            assert part in result.stderr
-        assert "Traceback" not in result.stderr
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -93,12 +82,6 @@ def test_a_base_beside_set_is_that_of_the_scene():
     for more, words in ((("--delta", "1"), "--base and --delta clash"), ((), "0.3 s")):
         result = invoke("simulate", "--base", "box:10cmx6cm", *more, *belt)
         assert words in result.stdout + result.stderr
-
-
-def test_above_the_friction_angle_the_run_ends_at_the_time_asked():
-    steep = ("--set", "floor.slope=0.5", "--set", "time=3")
-    result = invoke("simulate", "--scene", "incline", *steep)
-    assert "time is up after 3 s" in result.stdout
 
 
 def test_a_map_over_a_scene_opens_in_xarray_and_equals_single_runs(tmp_path):

@@ -39,13 +39,12 @@ def test_a_constant_law_is_a_coefficient(tmp_path):
     assert runs[0].energy_residual < 1e-9
 
 
-def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path):
+@pytest.mark.parametrize("by_name", [False, True])
+def test_a_coefficient_in_proportion_to_speed_is_viscous(tmp_path, by_name):
     rate = 0.5  # f = rate · u: the motion decays like exp(−rate g t), sliding and spin apart
     points = [(u, rate * u) for u in (0.0, 0.5, 1.0, 2.0)]
-    run = simulate_scene({
-        "puck": {"radius": 0.04}, "floor": {"law": law(tmp_path, points)}, "launch": LAUNCH,
-        "time": 0.4,
-    })  # fmt: skip
+    floor = {"law": pt.PowerLaw(rate, 1.0) if by_name else law(tmp_path, points)}
+    run = simulate_scene({"puck": {"radius": 0.04}, "floor": floor, "launch": LAUNCH, "time": 0.4})
     left = math.exp(-rate * STANDARD_GRAVITY * 0.4)
     assert run.end == "time is up"
     assert run.last["vx"] == pytest.approx(0.8 * left, rel=1e-9)
@@ -115,10 +114,9 @@ def test_laws_that_cannot_be_are_refused(floor, words):
         simulate_scene({"puck": PUCK, "floor": floor, "launch": LAUNCH})
 
 
-def by_quadrature(points, puck, launch, times):
-    """Place and velocity at times by DOP853 with friction from quadrature: no table, no events."""
-    friction = pt.SpeedLaw(*points)
-    radius, height, g = puck["radius"], puck["height"], STANDARD_GRAVITY
+def as_by_quadrature(tables, friction):
+    """A launch under a law as by DOP853 with friction from quadrature: no table, no events."""
+    (radius, height), g = (tables["puck"][name] for name in ("radius", "height")), STANDARD_GRAVITY
 
     def rates(t, y):
         vx, vy, w = y[3:]
@@ -127,26 +125,28 @@ def by_quadrature(points, puck, launch, times):
         rho = pt.contact.speed_resultants(phi, Q, friction, 2.0 * height / radius)
         sine = math.copysign(rim / Q, w)
         along, left = g * float(rho.parallel) / Q, g * sine * float(rho.perpendicular) / Q
-        turning = 2.0 / radius**2 * 0.5 * g * radius * sine * float(rho.spin)
+        turning = g / radius * sine * float(rho.spin)
         return [vx, vy, w, -along * vx + left * vy, -along * vy - left * vx, -turning]
 
+    launch, times = tables["launch"], [0.1, 0.2, 0.3]
     start = [0.0, 0.0, 0.0, *launch["velocity"], launch["spin"]]
-    return solve_ivp(
-        rates, (0.0, times[-1]), start, "DOP853", times, rtol=1e-12, atol=1e-13, max_step=0.02
+    truth = solve_ivp(
+        rates, (0.0, 0.3), start, "DOP853", times, rtol=1e-12, atol=1e-13, max_step=0.02
     ).y
+    run = simulate_scene(tables, times)
+    for name, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
+        unit = 0.94 if name in ("x", "y", "vx", "vy") else 0.94 / radius
+        assert run.columns[name] == pytest.approx(row, abs=tables["tol"] * unit)
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("tol", [1e-6, 1e-9])
 def test_a_law_with_corners_keeps_the_tolerance_of_the_scene(tmp_path, tol):
     points = [0.0, 0.2, 0.5, 0.9, 2.0], [0.3, 0.12, 0.2, 0.2, 0.1]
-    times = [0.1, 0.2, 0.3]
     floor = {"law": law(tmp_path, zip(*points, strict=True))}
-    truth = by_quadrature(points, PUCK, LAUNCH, times)
-    run = simulate_scene({"puck": PUCK, "floor": floor, "launch": LAUNCH, "tol": tol}, times)
-    for name, row in zip(("x", "y", "orientation", "vx", "vy", "spin"), truth, strict=True):
-        unit = 0.94 if name in ("x", "y", "vx", "vy") else 0.94 / PUCK["radius"]
-        assert run.columns[name] == pytest.approx(row, abs=tol * unit)
+    as_by_quadrature(
+        {"puck": PUCK, "floor": floor, "launch": LAUNCH, "tol": tol}, pt.SpeedLaw(*points)
+    )
 
 
 def test_the_table_of_a_law_is_built_once_kept_and_listed(tmp_path, monkeypatch):

@@ -189,11 +189,6 @@ def test_times_in_any_legal_way() -> None:
             simulate_scene(whole, wrong)  # type: ignore[arg-type]
 
 
-def test_what_never_stops_says_so() -> None:
-    with pytest.raises(InputError, match=r"it may never stop; give a time"):
-        simulate_scene(scene(floor={"slope": 0.6}))
-
-
 def test_without_friction_nothing_moves_at_rest():
     """There is neither a speed nor a force for a scale of errors."""
     run = simulate_scene(

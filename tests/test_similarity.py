@@ -103,16 +103,11 @@ def test_scale_free_to_the_ends_of_floating_point(scale: float):
     assert float(far.stop_time) * decel == pytest.approx(float(base.stop_time), rel=1e-14)
 
 
-def test_subnormal_and_oversized_launches():
+def test_subnormal_launches():
     tiny = stop((1e-310, 0.0), 1e-310)
     run = simulate((1e-310, 0.0), 1e-310)
     assert float(tiny.stop_time) == pytest.approx(run.stop_time, rel=1e-9)
     assert tiny.status == 0
-    huge = stop([(1.0, 0.0), (1.0, 0.0)], [1e300, 1.0])
-    assert huge.status.tolist() == [2, 0]
-    for values in (huge.stop_time, huge.path_length, huge.body_angle):
-        assert np.isnan(values[0])
-        assert np.isfinite(values[1])
 
 
 def test_a_table_of_the_wrong_kind_is_said():

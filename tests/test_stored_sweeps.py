@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import invoke
+from test_one_store import content
 
 from puck_tables import Puck, Scene
 from puck_tables._core import safe_write
@@ -24,13 +25,6 @@ zarr = pytest.importorskip("zarr")
 PUCK = Puck.similar()
 GRID: dict[str, Any] = {"spin": np.linspace(-3.0, 3.0, 301), "speed": np.linspace(0.0, 2.0, 200)}
 OUTPUTS = ("stop_time", "stop_x", "stop_y", "path_length", "turn_angle", "body_angle", "status")
-
-
-def content(store: Path) -> dict[str, bytes]:
-    return {
-        str(path.relative_to(store)): path.read_bytes()
-        for path in store.rglob("*") if path.is_file()
-    }  # fmt: skip
 
 
 def test_a_store_holds_the_bits_of_the_map(tmp_path: Path):

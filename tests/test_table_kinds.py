@@ -191,21 +191,6 @@ def test_other_formats_kinds_and_strangers_are_refused_by_name(kind, saved, tmp_
         other.load(saved(kind))
 
 
-def test_what_is_no_table_is_refused(tmp_path: Path):
-    with pytest.raises(TableError, match="there is no table file"):
-        Table.load(tmp_path / "none.h5")
-    (tmp_path / "text.h5").write_text("puck")
-    with pytest.raises(TableError, match="not an HDF5 file"):
-        Table.load(tmp_path / "text.h5")
-    for path in (tmp_path, "/dev/zero"):
-        with pytest.raises(TableError, match="not a regular file"):
-            Table.load(path)
-    with h5py.File(tmp_path / "other.h5", "w") as other:
-        other["x"] = 1.0
-    with pytest.raises(TableError, match="not a table of this program"):
-        Table.load(tmp_path / "other.h5")
-
-
 @pytest.mark.parametrize(
     ("of", "arguments", "error", "words"),
     [

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from rarely import thorough
 from rays_judge import border, points_on_rays
+from scenes import end_of
 from scipy.optimize import root
 
 import puck_tables as pt
@@ -86,12 +87,6 @@ def test_friction_is_that_of_points_on_rays(on: str, inner: float) -> None:
 LAUNCH = pt.Launch((0.7, 0.2), spin=14.0)
 
 
-def ends(puck: pt.Puck, floor: pt.Floor) -> np.ndarray:
-    run = pt.Scene(puck, floor, LAUNCH, tol=1e-9).simulate([0.0])
-    assert run.end == "at rest" and abs(run.energy_residual) < 1e-9
-    return np.array([run.end_time, *(run.last[key] for key in ("x", "y", "orientation"))])
-
-
 @pytest.mark.parametrize("height", [0.17, 0.3])
 def test_where_all_frictions_are_one_it_is_the_plain_puck(height: float) -> None:
     """That is looked up, by tables of the contact that opens."""
@@ -105,7 +100,7 @@ def test_where_all_frictions_are_one_it_is_the_plain_puck(height: float) -> None
         pt.Floor(static_ratio=1.2),
         pt.Floor(law=[[0.0, 0.3], [9.0, 0.3]]),
     ):
-        assert np.abs(ends(puck, floor) - truth).max() < 2e-8, floor
+        assert np.abs(end_of(puck, floor, LAUNCH, tol=1e-9) - truth).max() < 2e-8, floor
 
 
 def test_it_is_the_puck_on_a_base_that_is_a_disc() -> None:
@@ -114,7 +109,8 @@ def test_it_is_the_puck_on_a_base_that_is_a_disc() -> None:
         pt.Floor(law=pt.StribeckLaw(0.4, 0.25, speed=0.3)),
     ):  # fmt: skip
         one, two = pt.Puck(RADIUS, 0.24, 0.3), pt.Puck(base="disc:0.05", height=0.24, friction=0.3)
-        assert np.abs(ends(one, floor) - ends(two, floor)).max() < 1e-9
+        found, truth = (end_of(each, floor, LAUNCH, tol=1e-9) for each in (one, two))
+        assert np.abs(found - truth).max() < 1e-9
 
 
 def test_it_tips_on_the_rough_strip_where_that_bears_it_no_more() -> None:

@@ -1,4 +1,4 @@
-"""Values of states at moments: looked up for plain pucks, integrated for others.
+"""Values of states at moments: looked up for plain pucks, integrated for few others.
 
 Of plain pucks with their derivatives where they are wanted.
 """
@@ -210,11 +210,13 @@ def for_each(
     run_chunks(some, pucks.size, 1, threads)
 
 
-def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArray:
+def states_of(
+    body: UnitPuck, launch: FloatArray, times: FloatArray, tol: float = TOL
+) -> FloatArray:
     """States of one puck at times (n,) s, integrated.
 
-    ``launch``: array (6,): vx, vy, ω, δ, J, r; ``times``: array (n,), s, ≥ 0.  Returns array (6,
-    n): x, y, heading from that at the launch, body angle, v, ω.
+    ``launch``: array (6,): vx, vy, ω, δ, J, r; ``times``: array (n,), s, ≥ 0; ``tol``: of Q/J,
+    Q²/J.  Returns array (6, n): x, y, heading from that at the launch, body angle, v, ω.
 
     >>> from puck_tables.motion.body import body_of
     >>> launch = np.array([1.0, 0.0, 0.0, 2.0, 1.0, 1.0])
@@ -227,6 +229,6 @@ def states_of(body: UnitPuck, launch: FloatArray, times: FloatArray) -> FloatArr
     if frame.slip == 0.0:
         return np.zeros((STATE_ROWS, times.size))
     source = source_of(body)
-    run, _ = solve(source, frame.speed, frame.rim, TOL)
+    run, _ = solve(source, frame.speed, frame.rim, tol)
     unit_states = run.states(frame.unit_times(times, float(run.stop[T]) * frame.time))
     return np.stack(frame.states(*unit_states))

@@ -1,4 +1,4 @@
-"""The state of any puck at any time: of plain pucks by look-up, of others by integration."""
+"""The state of any puck at any time: by look-up, of few other than plain ones by integration."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ from puck_tables.stopping.jacobian import (
 )
 from puck_tables.stopping.launch_arrays import TOO_LARGE, Launches, fits, launches_in, launches_of
 from puck_tables.stopping.per_height import refuse_many
-from puck_tables.stopping.state_values import all_looked_up, integrate, refuse_times
+from puck_tables.stopping.state_section import fill_others
+from puck_tables.stopping.state_values import all_looked_up, refuse_times
 from puck_tables.stopping.stop_table import StopTable
 from puck_tables.stopping.stop_values import UPPER_DELTA
 from puck_tables.table.table import refuse_other_kind
@@ -164,7 +165,8 @@ def states(
         The default one if left out.
     pressure, gyration
         As :class:`puck_tables.Puck`.  For δ > 1 or another kind of puck each puck is integrated,
-        which takes some milliseconds, and a second for each different height.
+        which takes some milliseconds, and a second for each different height; from 1500 pucks of
+        one height on they are looked up where splines are as good, made in one to three seconds.
     jacobian : bool
         Whether derivatives are wanted too: of x, y, orientation, vx, vy and spin by vx, vy, spin,
         delta, decel and radius of the launch, and by time (velocity and acceleration), in this
@@ -257,8 +259,8 @@ def states(
         if slopes is not None:
             slopes[looked] = part
             integrated_jacobians(bodies, rows, others, each, moments, slopes, threads)
-        integrate(bodies, rows, others, each, moments, looked_up, threads)
-        words = _explained(int(plain.sum()), int((~plain).sum()))
+        looked = fill_others(bodies, rows, others, each, moments, looked_up, threads)
+        words = _explained(int(plain.sum()) + looked, others.size - looked)
     if slopes is None:
         return states_in(looked_up, moments, launches, which, shape, words)
     rows, names = launches.matrix, MOMENT_NAMES
@@ -276,7 +278,7 @@ def states(
 @lru_cache
 def _explained(looked: int, integrated: int) -> str:
     each = ((looked, "looked up"), (integrated, "integrated"))
-    words = [f"{count} pucks {how}" for count, how in each if count or not integrated]
+    words = [f"{count} pucks {how}" for count, how in each if count] or ["no pucks looked up"]
     return " and ".join(words) + ", to 1e-9 of Q, Q^2/(f g) and Q^2/(f g r)"
 
 

@@ -288,7 +288,7 @@ _LOWEST = 1e-290  # below, a ratio of speeds loses digits: both are raised by a 
 
 
 @inlined
-def _place(speed: float, edge: float, section: FloatArray, width: int) -> tuple[int, int, float]:
+def place_of(speed: float, edge: float, section: FloatArray, width: int) -> tuple[int, int, float]:
     """Side, first number and place in the cell of speeds v and r|ω|."""
     larger = max(speed, edge)
     raised = 2.0**200 if larger < _LOWEST else 1.0
@@ -321,7 +321,7 @@ def fill_section_stops(
         else:
             speed = math.hypot(vx, vy)
             slip = math.hypot(speed, edge)
-        side, i, place = _place(speed, edge, section, _FUNCTIONS)
+        side, i, place = place_of(speed, edge, section, _FUNCTIONS)
         time, along, across, length, body, turn = weighted_rows(
             flat, side * section.shape[1] + i, basis(place), _FUNCTIONS
         )
@@ -352,7 +352,7 @@ def fill_section_slopes(
     flat, numbers = section.reshape(-1), out.reshape(-1)
     for n in range(speed.size):
         patience(1)
-        side, i, place = _place(speed[n], rim[n], section, OWN)
+        side, i, place = place_of(speed[n], rim[n], section, OWN)
         # a node is good whatever lies between
         left[n] = place > 0.0 and not good[side, (i - HEADER) // OWN]
         if not left[n]:

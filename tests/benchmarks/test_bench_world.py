@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from boards import draw, hexagon, judged
+from boards import cushions, draw, hexagon, judged
 from pucks_judge import Floor, play
 
 import puck_tables as pt
@@ -35,13 +35,7 @@ def carrom(gap: float) -> pt.Scene:
     ]
     strike = pt.Launch((0.05, 4.0), position=(-0.004, -0.3))
     striker = pt.Puck(STRIKER, mass=0.015, launch=strike, name="striker", **rim)
-    side = 0.5 * BOARD
-    walls = [
-        pt.Wall(
-            (-side * nx, -side * ny), normal=(nx, ny), restitution=0.9, tangential=0.0, friction=0.2
-        )
-        for nx, ny in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
-    ]
+    walls = cushions(0.5 * BOARD, 0.9, tangential=0.0, friction=0.2)
     return pt.Scene(pucks=[*men, striker], walls=walls)
 
 

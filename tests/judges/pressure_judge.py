@@ -12,7 +12,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
-from astride_judge import FloorMap
+from astride_judge import FloorMap, under_linear_load
 
 _T = np.linspace(-3.4, 3.4, 103)
 _SPREAD = np.exp(0.5 * math.pi * np.sinh(-np.abs(_T)))
@@ -124,6 +124,4 @@ def friction(
                 if rho > 0.0:
                     weight = (high - low) * rule * law(rho, short) * rho / math.pi
                     m += weight * on_circle(ground, *slip, rho)
-    lever = height / mean_square
-    b = np.linalg.solve(np.eye(2) - lever * np.array([[m[2], m[3]], [m[4], m[5]]]), lever * m[:2])
-    return np.array([m[0] + b @ m[2:4], m[1] + b @ m[4:6], m[4] - m[3] + b @ m[6:8]])
+    return under_linear_load(m, height / mean_square)

@@ -84,7 +84,7 @@ class Floor:
     def rub(self, d: Disc, q: np.ndarray, u: np.ndarray) -> np.ndarray:
         """Force and torque of the floor at a slip u of a disc."""
         found = self.under(q, d.radius, d.f)
-        speed, rim = math.hypot(u[0], u[1]), d.radius * u[2]
+        rim = d.radius * u[2]
         if isinstance(found, FloorMap):
             turn = 0.0 if self.strips is None else self.strips[0]
             c, s = math.cos(turn), math.sin(turn)
@@ -95,12 +95,7 @@ class Floor:
             return np.array(whole) * d.mass * G
         if found == 0.0:
             return np.zeros(3)
-        if abs(rim) <= 1e-13 * speed:
-            x, y, turning = -u[0] / speed, -u[1] / speed, 0.0
-        elif speed <= 1e-13 * abs(rim):
-            x, y, turning = 0.0, 0.0, -4.0 / 3.0 * math.copysign(1.0, rim)
-        else:
-            x, y, turning = friction(u[0], u[1], rim, 2.0 * found * d.height / d.radius)
+        x, y, turning = friction(u[0], u[1], rim, 2.0 * found * d.height / d.radius)
         return found * d.mass * G * np.array([x, y, 0.5 * d.radius * turning])
 
 

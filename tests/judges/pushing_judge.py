@@ -10,37 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from reference import friction
 from scipy.integrate import solve_ivp
-from scipy.special import ellipe, ellipkm1, hyp2f1
-
-
-def disc_friction(vx, vy, rim):
-    """Force over f N, and torque over f N r, on a flat disc; ``rim`` = r ω."""
-    speed, turning = math.hypot(vx, vy), abs(rim)
-    if speed == 0.0 and turning == 0.0:
-        return 0.0, 0.0, 0.0
-    inside = speed <= turning
-    k = speed / turning if inside else turning / speed
-    if k == 1.0:  # the centre of rotation on the rim
-        along, turn = 8.0 / (3.0 * math.pi) / speed, math.copysign(8.0 / (9.0 * math.pi), rim)
-        return -along * vx, -along * vy, -turn
-    m = k * k
-    first, second = ellipkm1((1.0 - k) * (1.0 + k)), ellipe(m)
-    third = (first - second) / m if m > 0.5 else 0.25 * math.pi * hyp2f1(0.5, 1.5, 2.0, m)
-    push = 4.0 / (3.0 * math.pi) * (second + first - third) * (k if inside else 1.0)
-    if inside:
-        turn = 4.0 / (9.0 * math.pi) * ((4.0 - 2.0 * m) * second + (m - 1.0) * first)
-    elif k == 0.0:
-        turn = 0.0
-    else:
-        turn = 4.0 / (9.0 * math.pi) * (
-            (4.0 * second - 5.0 * first + 2.0 * third) / k + 3.0 * k * first
-        )  # fmt: skip
-    return (
-        -push * vx / speed if speed else 0.0,
-        -push * vy / speed if speed else 0.0,
-        -math.copysign(turn, rim) if rim else 0.0,
-    )
 
 
 class Judge:
@@ -89,11 +60,11 @@ class Judge:
         for i in self.free:
             radius, mass, inertia, decel, damping, spin_damping, wake = self.discs[i]
             vx, vy, w = v[3 * i : 3 * i + 3]
-            fx, fy, turn = disc_friction(vx, vy, radius * w)
+            fx, fy, turn = friction(vx, vy, radius * w, 0.0)
             drag = damping + wake * math.hypot(vx, vy)
             out[3 * i] = mass * (decel * fx + self.pull[0] - drag * vx)
             out[3 * i + 1] = mass * (decel * fy + self.pull[1] - drag * vy)
-            out[3 * i + 2] = mass * decel * radius * turn - inertia * spin_damping * w
+            out[3 * i + 2] = 0.5 * mass * decel * radius * turn - inertia * spin_damping * w
         return out
 
     def solved(self, t, q, v):
