@@ -77,13 +77,7 @@ class FrictionLaw:
         return [float(getattr(self, name)) for name in named]
 
     def checked(self) -> FrictionLaw:
-        """Itself, with plain numbers.
-
-        Raises
-        ------
-        InputError
-            If a number is out of range; all of them are named.
-        """
+        """Itself, with plain numbers; InputError if one is out of range: all of them are named."""
         numbers = {name: getattr(self, spec.name) for name, spec in specs(type(self)).items()}
         reading = Reading([], None)
         values = read_values(type(self), numbers, "", reading)
@@ -96,13 +90,7 @@ class FrictionLaw:
         return law
 
     def __call__(self, speed: npt.ArrayLike) -> FloatArray:
-        """The friction coefficient at slip speeds ≥ 0, m/s.
-
-        Raises
-        ------
-        InputError
-            If a speed or a number of the law is out of range.
-        """
+        """The friction coefficient at slip speeds ≥ 0, m/s; InputError if one is out of range."""
         law = self if "_checked" in vars(self) else self.checked()
         speeds = finite_array("speed", speed, "m/s")
         if (speeds < 0.0).any():

@@ -114,8 +114,6 @@ def overlap(one: Shape, other: Shape) -> bool:
             for a, b, size, _ in second[1]:
                 if abs(radius - size) < math.dist((x, y), (a, b)) < radius + size:
                     return True
-            if sign > 0.0 and _holds(second, (x + radius, y)):
-                return True
-            if sign > 0.0 and _holds(second, (x, y)):
+            if sign > 0.0 and (_holds(second, (x + radius, y)) or _holds(second, (x, y))):
                 return True
     return False

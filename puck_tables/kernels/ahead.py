@@ -97,7 +97,9 @@ class _Data:
 
     def address(self, module: Any, array: Any) -> Any:
         """Where an array lies, a constant."""
-        owner, offset = _whole_of(array)
+        owner = array  # whose memory it lies in
+        while isinstance(owner.base, np.ndarray):
+            owner = owner.base
         place = owner.ctypes.data
         if place not in self._made:
             content = owner.tobytes()
@@ -106,15 +108,9 @@ class _Data:
             made.initializer = ir.Constant(kind, bytearray(content) if any(content) else None)
             made.align, made.linkage = _ALIGNED, "internal"
             self._made[place] = made
-        return self._made[place].gep([ir.Constant(_WORD, 0), ir.Constant(_WORD, offset)])
-
-
-def _whole_of(array: Any) -> tuple[Any, int]:
-    """The array whose memory an array lies in, and where, in bytes."""
-    owner = array
-    while isinstance(owner.base, np.ndarray):
-        owner = owner.base
-    return owner, array.ctypes.data - owner.ctypes.data
+        return self._made[place].gep(
+            [ir.Constant(_WORD, 0), ir.Constant(_WORD, array.ctypes.data - place)]
+        )
 
 
 def _constant(module: Any, data: _Data, kind: Any, value: Any) -> Any:
@@ -195,17 +191,9 @@ def code_for(triple: str, record: Any, doors: Sequence[Outside]) -> bytes:
     that of IEEE, nothing is rounded but what is written, and its mathematics is its own: the same
     calls give the same bits on every machine.
 
-    Parameters
-    ----------
-    triple : of the machine, as LLVM has it
-    record : a named tuple of arrays and numbers, the first argument of all kernels
-    doors : functions of the address of a record, whole numbers (32 bits) and doubles, that give a
-        whole number
-
-    Raises
-    ------
-    PuckError
-        If it cannot be compiled.
+    ``triple``: of the machine, as LLVM has it; ``record``: a named tuple of arrays and numbers, the
+    first argument of all kernels; ``doors``: functions of the address of a record, whole numbers
+    (32 bits) and doubles, that give a whole number.  Raises PuckError if it cannot be compiled.
     """
     kind = _typeof(record)
     names = [(one.name, one.kernel.__qualname__, one.arguments) for one in doors]

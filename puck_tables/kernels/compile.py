@@ -136,8 +136,7 @@ class Door:
     def _compile(self, *args: Any) -> Callable[..., Any]:
         if not self._keeps(args):
             self.announce()
-        code: Callable[..., Any] = _from_numba().code_for(self, args)
-        return code
+        return _from_numba().code_for(self, args)
 
     def announce(self) -> None:
         """Say that it is compiled, if that takes a while."""
@@ -231,13 +230,7 @@ def _is_complex(result: Any) -> bool:
 
 
 def _from_numba() -> Any:
-    """What compiles, loaded by one thread.
-
-    Raises
-    ------
-    InputError
-        If numba cannot use an environment variable that is set for it.
-    """
+    """What compiles, loaded by one thread; errors as of :func:`read_settings`."""
     with _importing:
         if "puck_tables.kernels.compiled" not in sys.modules:
             read_settings()
@@ -340,12 +333,7 @@ def inner(function: Function) -> Function:
 
 
 def read_settings() -> None:
-    """Import numba, if it can use the environment variables that are set for it.
-
-    Raises
-    ------
-    InputError
-    """
+    """Import numba; InputError if it cannot use the environment variables set for it."""
     for name, (form, words) in _FATAL.items():
         value = os.environ.get(name)
         if value is not None and not re.fullmatch(form, value):

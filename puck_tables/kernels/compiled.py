@@ -163,17 +163,13 @@ def _symbol_for(door: KernelDoor, kinds: tuple[Any, ...]) -> str:
 @_deep
 def _address_of(door: KernelDoor, kinds: tuple[Any, ...]) -> int:
     """Where a kernel for such arguments is, compiled or read."""
-    if not (kinds in door.compiled.overloads or door.compiled._cache.keeps(kinds, _target())):
+    target: Any = cpu_target.target_context
+    if not (kinds in door.compiled.overloads or door.compiled._cache.keeps(kinds, target)):
         door.announce()
     with _compiling(door):
         door.compiled.compile(kinds)
     code = door.compiled.overloads[kinds]
-    address: int = code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
-    return address
-
-
-def _target() -> Any:
-    return cpu_target.target_context
+    return code.library.get_pointer_to_function(code.fndesc.llvm_func_name)
 
 
 @typeof_impl.register(FunctionType)
@@ -193,7 +189,7 @@ def dispatcher_of(function: Any, fuses: bool) -> Any:
         made = _dispatcher(function, fuses, door=False, pasted=behind.get(function, False))
         made.get_call_template = partial(_whatever_its_value, made.get_call_template)
         if linked_at_doors:
-            made._insert = _not_entered
+            made._insert = lambda *_, **__: None  # it has no door to Python
         _dispatchers[function, fuses] = made
     return _dispatchers[function, fuses]
 
@@ -256,16 +252,12 @@ def _at_door(door: KernelDoor, template_for: Callable[..., Any], args: Any, name
     with _compiling(door):
         template = _whatever_its_value(template_for, args, named)
     if linked_at_doors and kept_code:  # numba's own cache would not bring the door along
-        for kinds, code in door.compiled.overloads.items():
-            _name_door(door.py_func, kinds, code)
+        # a library says at which door it is, so that it is called and not linked
+        function = door.py_func
+        for kinds, code in door.compiled.overloads.items() if is_importable(function) else ():
+            place = function.__module__, function.__qualname__
+            code.library.door = Called(*place, kinds, code.fndesc.llvm_func_name)
     return template
-
-
-def _name_door(function: Any, kinds: tuple[Any, ...], code: Any) -> None:
-    """Say at which door a library is, so that it is called and not linked, if it can be found."""
-    module, name = function.__module__, function.__qualname__
-    if is_importable(function):
-        code.library.door = Called(module, name, kinds, code.fndesc.llvm_func_name)
 
 
 def _put_at_hand(called: Any) -> None:
@@ -284,7 +276,3 @@ def _whatever_its_value(template_for: Callable[..., Any], args: Any, named: Any)
     """Compile for any number where a constant is handed in, not for each constant anew."""
     of_any = tuple(types.unliteral(kind) for kind in args)  # type: ignore[no-untyped-call]
     return template_for(of_any, named)
-
-
-def _not_entered(*_: Any, **__: Any) -> None:
-    """What is compiled for other kernels has no door to Python."""

@@ -193,16 +193,12 @@ def read_sealed(path: Path) -> bytes | None:
 def write_sealed(path: Path, content: bytes) -> None:
     """A whole file, or none where the disk is full; two processes may write the same at once."""
     with contextlib.suppress(OSError):
-        _write(path, hashlib.sha256(content).digest() + content)
-
-
-def _write(path: Path, content: bytes) -> None:
-    descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".part")
-    try:
-        with open(descriptor, "wb") as file:
-            file.write(content)
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
-        raise
+        descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=".", suffix=".part")
+        try:
+            with open(descriptor, "wb") as file:
+                file.write(hashlib.sha256(content).digest() + content)
+            os.replace(name, path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                os.unlink(name)
+            raise

@@ -270,7 +270,8 @@ def law_sums_at_first(
     one, two, three = area * h[:, 1], area * h[:, 2], area * (rx * ey - ry * ex) * h[:, 3]
     terms = [one * ex, one * ey, two * ex * rx, two * ex * ry, two * ey * rx, two * ey * ry,
              three * rx, three * ry]  # fmt: skip
-    return _signed(moved(_summed(terms), cx, cy), w)
+    sums = moved(_summed(terms), cx, cy)
+    return sums if w > 0.0 else tuple(-one for one in sums)  # type: ignore[return-value]
 
 
 def _summed(terms: list[FloatArray]) -> Sums:
@@ -284,10 +285,6 @@ def _against(axes: Ellipse, ex: FloatArray, ey: FloatArray) -> tuple[FloatArray,
     size = np.hypot(x, y)
     x, y = axes.along * x / size, axes.across * y / size
     return c * x - s * y, s * x + c * y
-
-
-def _signed(sums: Sums, w: float) -> Sums:
-    return sums if w > 0.0 else tuple(-one for one in sums)  # type: ignore[return-value]
 
 
 def _polynomials(law: FloatArray, u: FloatArray) -> FloatArray:

@@ -218,19 +218,12 @@ def fill_balances(
     ratio: FloatArray, fast: npt.NDArray[np.bool_], delta: float, guess: FloatArray,
     lines: FloatArray, gauss: FloatArray, out: FloatArray,
 ) -> int:  # fmt: skip
-    """Resultants and chord of directions (n,) into ``out`` (n, 5), NaN where not solved.
+    """Resultants and chord of directions (n,) into ``out`` (n, 5), NaN where not solved; how many.
 
-    Parameters
-    ----------
-    ratio, fast : min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v; neighbours next to each other
-    delta : dimensionless height, in partial contact at all of them
-    guess : array (2, n), offset and bearing of the chord
-    lines, gauss : arrays (2, m), nodes and weights on [−1, 1]; m at most 128
-
-    Returns
-    -------
-    int
-        How many are not solved.
+    ``ratio``, ``fast``: min(v, r|ω|)/max(v, r|ω|), and whether r|ω| > v; neighbours next to each
+    other; ``delta``: dimensionless height, in partial contact at all of them; ``guess`` (2, n):
+    offset and bearing of the chord; ``lines``, ``gauss`` (2, m): nodes and weights on [−1, 1]; m at
+    most 128.
     """
     patience(ratio.size)
     room, sums, chord = np.empty(_ROWS * BLOCK), np.empty(_SUMS), np.empty(2)

@@ -44,13 +44,8 @@ here = _Thread()
 def patience(items: int) -> None:
     """Look at the clock, with so many items of work ahead; compiled code does not.
 
-    Raises
-    ------
-    OutOfPatience
-        Where a kernel runs as it is written, and too long.
+    Raises OutOfPatience where a kernel runs as it is written, and too long.
 
-    Examples
-    --------
     >>> patience(1000)  # no kernel runs
     """
     if here.as_written and (items > FEW or time.thread_time() > here.silent_until):

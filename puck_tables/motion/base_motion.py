@@ -167,21 +167,13 @@ def slide(
 ) -> tuple[int, int, float, float]:  # fmt: skip
     """From a launch to the stop; where moments are asked for, not beyond the step over the last.
 
-    Parameters
-    ----------
-    base : as :func:`puck_tables.kernels.base_friction.packed` has it, lengths as ``gyration``
-    gyration : k
-    turning : Q₀²/(J k)
-    local : the error of a step
-    y : array (9,): the launch, of q = 1; then the stop, with velocities just before it, or the end
-        of the last step
-    work : array (ROWS, 9), work space
-    times, states : moments (n,), none before the one before it, and room for states there, (n, 6)
+    ``base``: as :func:`puck_tables.kernels.base_friction.packed` has it, lengths as ``gyration``,
+    k; ``turning``: Q₀²/(J k); ``local``: the error of a step; ``y`` (9,): the launch, of q = 1;
+    then the stop, with velocities just before it, or the end of the last step; ``work`` (ROWS, 9);
+    ``times``, ``states``: moments (n,), in order, and room for states there, (n, 6).
 
-    Returns
-    -------
-    status, number of steps, the largest difference between energy lost and work over the energy,
-    and how fast the direction of (v, s) still changes, per factor e of q
+    Returns status, number of steps, the largest difference between energy lost and work over the
+    energy, and how fast the direction of (v, s) still changes, per factor e of q.
     """
     arm, steps, n, residual = base[REACH] / gyration, 0, 0, 0.0
     h, noise = _FIRST_STEP, noise_of(base)

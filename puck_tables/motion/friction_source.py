@@ -26,7 +26,6 @@ from puck_tables.motion.solve import ErrorEstimate, Setting
 from puck_tables.motion.steppers import stepping_of
 from puck_tables.table.friction_section import FINEST_ACCURACY
 from puck_tables.table.resultant_table import ResultantTable
-from puck_tables.table.slip_spline import SlipSpline
 
 FINEST_TOL = 1e-11  # of a motion whose friction is a section
 TABLE_FACTOR = 5.0  # an error of the friction enters a stop at most so many times
@@ -197,7 +196,7 @@ class Sections:
     def explained(self, selection: Selection, setting: Setting, error: ErrorEstimate) -> Selection:
         """The setting in the end, and what was measured."""
         scheme = Scheme(selection.method, FrictionForm.SECTION)
-        spline = self._spline(setting.accuracy)
+        spline = self.body.friction(setting.accuracy).spline
         explanation = (
             f"Asked: an error of at most {selection.tol:.3g} {UNITS}.\n"
             f"Taken: {named(scheme.name, setting.words)}.\n"
@@ -207,9 +206,6 @@ class Sections:
             f"It errs by {error.total:.2g}, measured by finer steps and by half the cells."
         )
         return Selection(scheme, setting.words, error.total, selection.tol, explanation)
-
-    def _spline(self, accuracy: float) -> SlipSpline:
-        return self.body.friction(accuracy).spline
 
     def next_accuracy(self, accuracy: float) -> float | None:
         """A tenth."""

@@ -155,8 +155,7 @@ def curvature_slope(delta: npt.ArrayLike) -> FloatArray:
     [7.06673562, 7.09397854, 7.15668696]
     """
     angle = limit_angle(_full_contact(delta))
-    slope: FloatArray = 2.0 / (np.sin(angle) * integrals(angle).b)
-    return slope
+    return 2.0 / (np.sin(angle) * integrals(angle).b)
 
 
 def approach_exponent(delta: npt.ArrayLike) -> FloatArray:
@@ -197,8 +196,7 @@ def approach_exponent(delta: npt.ArrayLike) -> FloatArray:
 def _spin_ratio(u: FloatArray, delta: npt.ArrayLike) -> FloatArray:
     """ρ_ω/ρ_∥ at u = ln(rω/v)."""
     rho = resultants(np.arctan(np.exp(u)), delta)
-    ratio: FloatArray = rho.spin / rho.parallel
-    return ratio
+    return rho.spin / rho.parallel
 
 
 def regime(

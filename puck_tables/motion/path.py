@@ -73,24 +73,14 @@ def integrate(
     section: FloatArray, delta: float, step_limit: int, z_path: FloatArray, y_path: FloatArray,
     result: FloatArray,
 ) -> tuple[int, int]:  # fmt: skip
-    """Run from (u, everything else 0) to the stop.
+    """Run from (u, everything else 0), u finite, to the stop; a status, the number of step ends.
 
-    Parameters
-    ----------
-    u : start value, finite
-    tableau : the method
-    steps : about how many steps to take; 0 lets the error estimate choose them
-    tolerance : the local error then allowed per step
-    place_unit : what errors of the place are measured in, 1 for Q₀²/J; a launch of nearly pure spin
-        moves by that times cos φ only
-    section, delta : friction at this δ, see :mod:`puck_tables.motion.equations_of_motion`
-    step_limit : the most steps
-    z_path, y_path : arrays (n,), (n, 8) for the step ends, or empty when nobody wants them
-    result : array (8 + 1): the state at the stop (its ψ: the turn), energy residual
-
-    Returns
-    -------
-    status, number of step ends
+    ``steps``: about how many to take; 0 lets the error estimate choose them, with a local error of
+    ``tolerance`` per step; ``place_unit``: what errors of the place are measured in, 1 for Q₀²/J; a
+    launch of nearly pure spin moves by that times cos φ only; ``section``, ``delta``: friction at
+    this δ, see :mod:`puck_tables.motion.equations_of_motion`; ``z_path``, ``y_path``: (n,), (n, 8)
+    for the step ends, or empty when nobody wants them; ``result`` (8 + 1): the state at the stop
+    (its ψ: the turn), energy residual.
     """
     adaptive = steps == 0.0
     exponent = 1.0 / tableau.order

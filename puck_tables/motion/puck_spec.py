@@ -210,12 +210,7 @@ class PuckSpec(KeepsDefaults):
         return 0.5 * self.friction * self.height
 
     def refuse_lift(self) -> None:
-        """Refuse a puck on a base of which friction would lift a part.
-
-        Raises
-        ------
-        ContactError
-        """
+        """Raise ContactError for a puck on a base of which friction would lift a part."""
         if self.shape is not None:
             try:
                 self.shape.refuse_lift(self.friction, self.height)
@@ -224,13 +219,7 @@ class PuckSpec(KeepsDefaults):
 
     @property
     def packed_base(self) -> FloatArray:
-        """What of it touches, in one array, where all of it stays down.
-
-        Raises
-        ------
-        ContactError
-            If a part would lift.
-        """
+        """What of it touches, in one array; ContactError if a part of it would lift."""
         self.refuse_lift()
         return packed(self.shape or Base.disc(self.radius), self.lever)
 
@@ -244,22 +233,12 @@ class PuckSpec(KeepsDefaults):
         return self.gyration if self.shape is not None else self.gyration * self.radius
 
     def refuse_base(self, what: str, instead: str = ROUND_ONLY) -> None:
-        """Refuse what is of round pucks alone, with what to do.
-
-        Raises
-        ------
-        InputError
-        """
+        """Refuse what is of round pucks alone, by an InputError with what to do."""
         if self.shape is not None:
             raise InputError(f"{what} is {instead}")
 
     def refuse_for_round(self, **values: Any) -> None:
-        """Refuse arguments that a puck on a base has no use for, where one is given.
-
-        Raises
-        ------
-        InputError
-        """
+        """Raise InputError where an argument is given that a puck on a base has no use for."""
         for name, value in values.items():
             if value is not None and value is not False:
                 self.refuse_base(name)
@@ -296,12 +275,7 @@ class PuckSpec(KeepsDefaults):
         return math.inf if ratio == 0.0 else 1.0 / ratio
 
     def refuse_unless_free(self) -> None:
-        """Refuse what asks for the stop of a puck that nothing brakes, or more than friction moves.
-
-        Raises
-        ------
-        InputError
-        """
+        """Raise InputError where the stop is asked for of a puck that nothing brakes."""
         if self.friction == 0.0:
             raise InputError(
                 "a puck with friction = 0 never stops: give friction > 0, or put it into a Scene"

@@ -80,16 +80,12 @@ class Frame(NamedTuple):
 
     def unit_times(self, times: FloatArray, stop_time: float) -> FloatArray:
         """Times (n,) s in natural units; infinite from the stop on."""
-        scaled: FloatArray = np.where(times < stop_time, times, np.inf) / (self.time or 1.0)
-        return scaled
+        return np.where(times < stop_time, times, np.inf) / (self.time or 1.0)
 
     def states(self, q: FloatArray, y: FloatArray) -> tuple[FloatArray, ...]:
-        """States of the puck from Q/Q₀ (n,) and natural states (n, 8).
+        """States of the puck from Q/Q₀ (n,) and natural states (n, 8), six arrays (n,).
 
-        Returns
-        -------
-        six arrays (n,)
-            x, y m; heading rad, from that at the launch; body angle rad; v m/s; ω rad/s.
+        X, y m; heading rad, from that at the launch; body angle rad; v m/s; ω rad/s.
         """
         cosine, sine = direction(y[:, U])
         turned = self.side * y[:, THETA] * (self.length / self.radius) + 0.0

@@ -102,7 +102,7 @@ class Animation(NamedTuple):
     lines: list[StraightPart]
     rounds: list[RoundPart]
     painted: list[Painted]
-    happenings: list[Happening]
+    happenings: Sequence[Happening]
     box: Box
     floor: Floor
     frictions: tuple[float, ...]  # all that there are on it
@@ -119,11 +119,8 @@ def film_of(result: TimedResult) -> Animation:
     """
     if isinstance(result, Trajectory):
         run = result(np.linspace(0.0, result.stop_time, _STATES))
-        states = _stacked(
-            run.time, run.x, run.y, run.orientation, run.vx, run.vy, run.spin
-        )  # fmt: skip
-        body = ("puck", run.puck.radius, "", False, states)
-        return _outlined(_film("Puck", "at rest", run.stop_time, [body]), [run.puck])
+        columns = [run.time, run.x, run.y, run.orientation, run.vx, run.vy, run.spin]
+        return _film("Puck", "at rest", run.stop_time, [_body("puck", run.puck, columns)])
     if isinstance(result, Run) and result.scene.pucks:
         return _film_of_several(result)
     if isinstance(result, Run):
@@ -137,11 +134,9 @@ def film_of_one(run: Run, columns: dict[str, FloatArray], shape: float = 0.0) ->
     ``shape``: the width of what is in sight over its height, 0: as it comes.
     """
     scene = run.scene
-    states = _stacked(*(columns[name] for name in ("time", *STATE)))
+    body = _body("puck", scene.puck, [columns[name] for name in ("time", *STATE)])
     happenings = [Happening(e.time, e.what, e.x, e.y) for e in run.events if e.what == "impact"]
-    body = ("puck", scene.puck.radius, "", False, states)
-    film = _film(scene.title, run.end, run.end_time, [body], happenings, scene, shape)
-    return _outlined(film, [scene.puck])
+    return _film(scene.title, run.end, run.end_time, [body], happenings, scene, shape)
 
 
 def states_drawn(run: Run) -> dict[str, FloatArray]:
@@ -172,19 +167,15 @@ def _film_of_several(run: Run) -> Animation:
         event.puck: event.time for event in run.events if event.what in ("pocket", "edge", "tip")
     }
     bodies = [
-        (
-            name, puck.radius, puck.colour, bool(puck.path),
-            _stacked(in_view.time, *(in_view[number][column] for column in STATE)),
-        )
-        for number, (name, puck) in enumerate(zip(run.names, pucks, strict=True))
+        _body(name, puck, [in_view.time, *(in_view[n][column] for column in STATE)], gone[name],
+              puck.colour, bool(puck.path))
+        for n, (name, puck) in enumerate(zip(run.names, pucks, strict=True))
     ]  # fmt: skip
     happenings = [
         Happening(event.time, event.what, event.x, event.y)
         for event in run.events if event.what in ("impact", "pocket", "edge", "tip")
     ]  # fmt: skip
-    film = _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
-    film = film._replace(bodies=[body._replace(gone=gone[body.name]) for body in film.bodies])
-    return _outlined(film, pucks)
+    return _film(scene.title, run.end, run.end_time, bodies, happenings, scene)
 
 
 def at_start(scene: SceneSpec) -> Animation:
@@ -194,31 +185,29 @@ def at_start(scene: SceneSpec) -> Animation:
     >>> len(at_start(Scene.load("crokinole")).bodies)
     4
     """
-    pucks = pucks_of(scene)
     bodies = [
-        (called(puck, n), puck.radius, puck.colour, bool(puck.path),
-         np.array([[0.0, *start_of(puck), puck.launch.orientation, 0.0, 0.0, 0.0]]))
-        for n, puck in enumerate(pucks)
+        _body(called(puck, n), puck,
+              list(np.array([[0.0, *start_of(puck), puck.launch.orientation, 0.0, 0.0, 0.0]]).T),
+              math.inf, puck.colour, bool(puck.path))
+        for n, puck in enumerate(pucks_of(scene))
     ]  # fmt: skip
-    return _outlined(_film(scene.title, "", 0.0, bodies, scene=scene), pucks)
+    return _film(scene.title, "", 0.0, bodies, scene=scene)
 
 
-def _outlined(film: Animation, pucks: Sequence[PuckSpec]) -> Animation:
-    """The film, with the outlines of bases that are not round."""
-    outlines = [() if puck.shape is None else tuple(outline_of(puck)) for puck in pucks]
-    bodies = zip(film.bodies, outlines, strict=True)
-    return film._replace(bodies=[body._replace(outline=outline) for body, outline in bodies])
-
-
-def _stacked(*columns: FloatArray) -> FloatArray:
-    return np.stack(columns, axis=1)
+def _body(
+    name: str, puck: PuckSpec, columns: Sequence[FloatArray], gone: float = math.inf,
+    colour: str = "", driven: bool = False,
+) -> MovingDisc:  # fmt: skip
+    """A puck with its states close to each other, for knots."""
+    outline = () if puck.shape is None else tuple(outline_of(puck))
+    return MovingDisc(name, puck.radius, colour, driven, np.stack(columns, axis=1), gone, outline)
 
 
 def _film(
-    title: str, end: str, end_time: float, bodies: list[tuple[str, float, str, bool, FloatArray]],
-    happenings: list[Happening] | None = None, scene: SceneSpec | None = None, shape: float = 0.0,
+    title: str, end: str, end_time: float, bodies: list[MovingDisc],
+    happenings: Sequence[Happening] = (), scene: SceneSpec | None = None, shape: float = 0.0,
 ) -> Animation:  # fmt: skip
-    """A film of bodies by name, radius, colour, whether driven, and states close to each other."""
+    """A film of bodies with states close to each other for knots, some without a colour."""
     rounds = [] if scene is None else rounds_of(scene)
     painted = [] if scene is None else painted_on(scene)
     planes = [] if scene is None else _half_planes(scene)
@@ -230,28 +219,23 @@ def _film(
         x, y = box.left + wide, box.low + high
         wide, high = max(wide, shape * high), max(high, wide / shape)
         box = Box(x - wide, x + wide, y - high, y + high)
-    size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body[1] for body in bodies)
+    size, smallest = max(box[1] - box[0], box[3] - box[2]), min(body.radius for body in bodies)
     unseen = min(_UNSEEN[0] * size, _UNSEEN[1] * smallest)
     lines = [*sides, *_lines(planes, box)]
     colours = (colour_of(number) for number in range(len(bodies)))
+    frictions = [] if scene is None else [
+        friction for puck in pucks_of(scene) for friction in frictions_under(scene, puck)
+    ]  # fmt: skip
     return Animation(
         title, end, end_time,
         [
-            MovingDisc(
-                name, radius, colour or next(colours), driven, _knots(states, radius, unseen),
-                math.inf,
-            )
-            for name, radius, colour, driven, states in bodies
+            body._replace(colour=body.colour or next(colours),
+                          knots=_knots(body.knots, body.radius, unseen))
+            for body in bodies
         ],
-        lines, rounds, painted, happenings or [], box, Floor() if scene is None else scene.floor,
-        () if scene is None else _frictions(scene), out_of_sight(planes, lines[len(sides) :]),
+        lines, rounds, painted, happenings, box, Floor() if scene is None else scene.floor,
+        tuple(frictions), out_of_sight(planes, lines[len(sides) :]),
     )  # fmt: skip
-
-
-def _frictions(scene: SceneSpec) -> tuple[float, ...]:
-    """All coefficients of the floor under its pucks."""
-    under = (frictions_under(scene, puck) for puck in pucks_of(scene))
-    return tuple(friction for one in under for friction in one)
 
 
 def colour_of(number: int) -> str:
@@ -326,16 +310,11 @@ def _leaps(states: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def _sight(
-    bodies: list[tuple[str, float, str, bool, FloatArray]], rounds: list[RoundPart],
-    lines: list[Painted | StraightPart],
-) -> Box:  # fmt: skip
+    bodies: list[MovingDisc], rounds: list[RoundPart], lines: list[Painted | StraightPart]
+) -> Box:
     """What ways, round parts of the board and lines with ends cover."""
-    low = np.min(
-        [states[:, 1:3].min(axis=0) - radius for _, radius, _, _, states in bodies], axis=0
-    )
-    high = np.max(
-        [states[:, 1:3].max(axis=0) + radius for _, radius, _, _, states in bodies], axis=0
-    )
+    low = np.min([one.knots[:, 1:3].min(axis=0) - one.radius for one in bodies], axis=0)
+    high = np.max([one.knots[:, 1:3].max(axis=0) + one.radius for one in bodies], axis=0)
     for one in rounds:
         centre = np.array([one.x, one.y])
         low, high = np.minimum(low, centre - one.radius), np.maximum(high, centre + one.radius)

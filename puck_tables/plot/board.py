@@ -165,7 +165,7 @@ def draw_on(axes: Axes, run: Run) -> None:
 
 def _draw_film(axes: Axes, film: Animation, box: Box) -> None:
     draw_board(axes, film)
-    few = _named(film) > 0
+    few = len(film.bodies) <= _NAMED
     for body in film.bodies:
         _draw_body(axes, body, body.name if few else "")
     impacts = [one for one in film.happenings if one.what == "impact"]
@@ -214,11 +214,6 @@ def _explain_looks(axes: Axes, film: Animation) -> None:
         looks.append(("driven", {"facecolor": "white", "edgecolor": GREY, "hatch": "////"}))
     for words, look in looks:
         axes.add_patch(Circle((math.nan, math.nan), label=words, **look))
-
-
-def _named(film: Animation) -> int:
-    """How many pucks are named in the legend."""
-    return len(film.bodies) if len(film.bodies) <= _NAMED else 0
 
 
 def _close_up(film: Animation) -> list[Box]:

@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.colours import on_white
@@ -73,10 +72,11 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     """The density alone, and every sample where it is low."""
     x, y = (samples.counted(name) for name in samples.place)
     counts = np.isfinite(x) & np.isfinite(y)
-    left = samples.ended - np.count_nonzero(counts)
+    fallen = samples.ended - np.count_nonzero(counts)
     x, y = x[counts], y[counts]
     sides = [_sides(samples, name) for name in samples.place]
-    in_view = _inside(x, y, sides)
+    (left, right), (low, high) = sides
+    in_view = (x >= left) & (x <= right) & (y >= low) & (y <= high)
     x, y = x[in_view], y[in_view]
     cloud = cloud_of(x, y)
     bare = np.ones(x.size, np.bool_)
@@ -97,7 +97,7 @@ def draw_on(panel: Axes, samples: Summary) -> None:
     no_rounding(panel)
     panel.set(xlabel=COLUMNS[samples.place[0]].axis, ylabel=COLUMNS[samples.place[1]].axis)
     notes = ["x and y of different scale"]
-    notes += [f"{left} of {samples.ended} samples left play"] if left else []
+    notes += [f"{fallen} of {samples.ended} samples left play"] if fallen else []
     if not in_view.all():
         notes.append(f"{np.count_nonzero(~in_view)} of {in_view.size} samples lie outside")
     noted(panel, "; ".join(notes))
@@ -207,13 +207,6 @@ def _sides(samples: Summary, name: str) -> tuple[float, float]:
         (least if least > low - near else low) - room,
         (most if most < high + near else high) + room,
     )
-
-
-def _inside(
-    x: FloatArray, y: FloatArray, sides: list[tuple[float, float]]
-) -> npt.NDArray[np.bool_]:
-    (left, right), (low, high) = sides
-    return np.asarray((x >= left) & (x <= right) & (y >= low) & (y <= high))
 
 
 def _histogram(panel: Axes, samples: Any, name: str) -> None:

@@ -64,7 +64,7 @@ def draw(stops: Map) -> Figure:
     axes, (end, *columns) = in_order(_last_two(stops), stops.end[place], *columns)
     labels = {name: _label(stops, name) for name in axes}
     for panel, name, values in zip(panels.flat, shown, columns, strict=False):
-        draw_over(figure, panel, axes, labels, values, _MAPS[name])
+        draw_over(panel, axes, labels, values, _MAPS[name])
         if panel.lines:
             _mark_ends(panel, axes, values, end)
         else:

@@ -26,7 +26,7 @@ def draw(stops: StopMap) -> Figure:
     figure = canvas(11.0, 6.8)
     panels = figure.subplots(2, 3, sharex=True)
     for panel, name in zip(panels.flat, stops.outputs, strict=False):
-        _draw(figure, panel, stops, axes, name, place)
+        _draw(panel, stops, axes, name, place)
     for n, panel in enumerate(panels.flat[len(stops.outputs) :], start=len(stops.outputs)):
         panel.set_visible(False)
         panels.flat[n - 3].tick_params(labelbottom=True)
@@ -40,30 +40,18 @@ def draw(stops: StopMap) -> Figure:
 def draw_on(panel: Axes, stops: StopMap) -> None:
     """The stop time alone."""
     axes, _, left_out, place = _sections(stops)
-    figure = panel.get_figure(root=True)
-    assert figure is not None
-    _draw(figure, panel, stops, axes, "stop_time", place)
+    _draw(panel, stops, axes, "stop_time", place)
     if left_out:
         noted(panel, left_out)
 
 
 def _draw(
-    figure: Figure, panel: Axes, stops: StopMap, axes: dict[str, Any], name: str,
-    place: tuple[int, ...],
-) -> None:  # fmt: skip
-    """One column over the axes."""
-    labels = {axis: _label(axis) for axis in axes}
+    panel: Axes, stops: StopMap, axes: dict[str, Any], name: str, place: tuple[int, ...]
+) -> None:
+    """One column over the axes; pressure laws by their names, not by their numbers."""
+    labels = {axis: COLUMNS[axis].axis if axis in COLUMNS else axis for axis in axes}
     ordered, (values,) = in_order(axes, getattr(stops, name)[place])
-    draw_over(figure, panel, ordered, labels, values, COLUMNS[name].axis)
-    _name_laws(panel, stops)
-
-
-def _label(name: str) -> str:
-    return COLUMNS[name].axis if name in COLUMNS else name
-
-
-def _name_laws(panel: Axes, stops: StopMap) -> None:
-    """Pressure laws by their names, not by their numbers."""
+    draw_over(panel, ordered, labels, values, COLUMNS[name].axis)
     what = COLUMNS["pressure"].axis
     for line in panel.lines:
         for number, law in enumerate(stops.laws):

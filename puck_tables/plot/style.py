@@ -187,9 +187,8 @@ def across_of(axes: Mapping[str, Any]) -> str:
 
 
 def draw_over(
-    figure: Figure, panel: Axes, axes: Mapping[str, Any], labels: Mapping[str, str], values: Any,
-    text: str,
-) -> None:  # fmt: skip
+    panel: Axes, axes: Mapping[str, Any], labels: Mapping[str, str], values: Any, text: str
+) -> None:
     """Draw values over one axis as a curve, over two as a map, or as curves if one has few values.
 
     ``labels``: what to write at an axis, by its name; ``text``: what the values are.  How many
@@ -201,7 +200,7 @@ def draw_over(
         text += f"\nnone at {missing} of {values.size}"
     names = list(axes)
     if is_map(axes):
-        _draw_map(figure, panel, axes, labels, values, text)
+        _draw_map(panel, axes, labels, values, text)
         return
     across = across_of(axes)
     rows = values if len(names) == 2 and across == names[1] else np.transpose(values)
@@ -268,9 +267,8 @@ def shaded(share: float) -> tuple[float, float, float]:
 
 
 def _draw_map(
-    figure: Figure, panel: Axes, axes: Mapping[str, Any], labels: Mapping[str, str], values: Any,
-    text: str,
-) -> None:  # fmt: skip
+    panel: Axes, axes: Mapping[str, Any], labels: Mapping[str, str], values: Any, text: str
+) -> None:
     (down, rows), (across, columns) = axes.items()
     finite = values[np.isfinite(values)]
     limits: dict[str, Any] = {}
@@ -280,7 +278,7 @@ def _draw_map(
     panel.grid(visible=False)
     panel.set_facecolor(NO_VALUE)
     mesh = panel.pcolormesh(edges_of(columns), edges_of(rows), values, rasterized=True, **limits)
-    figure.colorbar(mesh, ax=panel)
+    colour_bar(panel, mesh, "")
     panel.set_title(text, fontsize=10)
     if _place(panel).is_last_row():
         panel.set_xlabel(labels[across])

@@ -124,13 +124,7 @@ def slopes_at(law: Law, phi: FloatArray, delta: float) -> FloatArray:
 class FrictionSection(SectionTable):
     """The friction ratios of a puck over its slip angle.
 
-    Parameters
-    ----------
-    values : array (nodes of φ, 3)
-        1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥.
-    law : Law
-    delta : dimensionless height 2fh/r
-    cotangents : cot φ of the singular lines, ascending
+    ``values`` (nodes of φ, 3): 1/ρ_∥, ρ_⊥/ρ_∥, ρ_ω/ρ_∥.
     """
 
     kind = "friction section"
@@ -179,12 +173,8 @@ class FrictionSection(SectionTable):
         """Coefficients for the motion of a puck with radius of gyration k (in units of r).
 
         The third ratio is multiplied by r²/(2k²): only r ω' = −(r²/2k²) J sin φ ρ_ω feels how the
-        mass is spread.
-
-        Parameters
-        ----------
-        gyration : k/r > 0
-        coarser : by every other node only, to see what the spline contributes to an error
+        mass is spread.  ``coarser``: by every other node only, to see what the spline contributes
+        to an error.
         """
         return motion_coefficients(self.spline.coarser() if coarser else self.spline, gyration)
 
@@ -197,22 +187,12 @@ class FrictionSection(SectionTable):
         return np.stack([self.spline.values[0, -1], self.spline.values[-1, -1]])
 
     def validate(self, progress: Progress | None = None, points: int = 600) -> CheckReport:
-        """Judge the section by the law.
-
-        Parameters
-        ----------
-        progress : callable (done, total), optional
-        points : how many are compared at random, and as many next to the lines, in cells and at
-            nodes
-        """
+        """Judge the section by the law, at so many ``points`` of each kind."""
         allowed = min(self.tolerance, COARSEST)
-
-        def apart(phi: FloatArray) -> FloatArray:
-            missed: FloatArray = self.ratios(phi) - friction_ratios(self.law, phi, self.delta)
-            return missed
-
-        at_nodes = max(allowed, _NODE_ERROR)
-        return self.judged(apart, "the law", points, allowed, at_nodes, progress)
+        return self.judged(
+            lambda phi: self.ratios(phi) - friction_ratios(self.law, phi, self.delta), "the law",
+            points, allowed, max(allowed, _NODE_ERROR), progress,
+        )  # fmt: skip
 
     # the record of the kind
 
@@ -302,27 +282,14 @@ def _ratios(rho: Resultants) -> FloatArray:
 
 @lru_cache(maxsize=64)
 def friction_section(law: Law, delta: float, accuracy: float = DEFAULT_ACCURACY) -> FrictionSection:
-    """Tabulate the friction of one puck.
+    """Tabulate the friction of one puck; the same call again costs nothing.
 
-    Parameters
-    ----------
-    law : Law
-    delta : dimensionless height 2fh/r
-        Up to 3.9637 under uniform pressure, to ``law.delta_max`` under another.
-    accuracy : the largest error of a friction ratio
+    ``delta``: dimensionless height 2fh/r, up to 3.9637 under uniform pressure, to ``law.delta_max``
+    under another; ``accuracy``: the largest error of a friction ratio.
 
-    Returns
-    -------
-    FrictionSection
-        Kept: the same call again costs nothing.
-
-    References
-    ----------
     Salnikova, Treschev, Gallyamov 2012, section 6; beyond full contact the same balance of moments
     with σ = max(0, a + b x + c y).
 
-    Examples
-    --------
     >>> from puck_tables.contact.laws import law_of
     >>> found = friction_section(law_of("uniform"), 2.0, 1e-7)
     >>> inverse, across, spin = found.ratios(np.array([0.5]))[0]

@@ -56,11 +56,8 @@ _NODE = 1e-10  # how well nodes under a law of quadrature are known
 class ResultantTable(LawTable):
     """Friction resultants under a pressure law, 0 ≤ δ ≤ 4⟨x²⟩, with the spline through them.
 
-    Parameters
-    ----------
-    values : array (nodes of φ, 4, 3)
-        ρ_∥, ρ_⊥, ρ_ω at the nodes of ``axis`` and at δ = 0, ⅓, ⅔ and 1 of ``delta_max``.
-    law : Law
+    ``values`` (nodes of φ, 4, 3): ρ_∥, ρ_⊥, ρ_ω at the nodes of ``axis`` and at δ = 0, ⅓, ⅔ and 1
+    of ``delta_max``.
     """
 
     kind = "resultants"
@@ -112,10 +109,7 @@ class ResultantTable(LawTable):
     def section(self, delta: float) -> FloatArray:
         """The friction ratios at one height, as :mod:`puck_tables.kernels.quadratic` reads.
 
-        Raises
-        ------
-        InputError
-            If δ is outside the range of the table, or it is not of uniform pressure.
+        Raises InputError if δ is outside the range of the table, or it is not of uniform pressure.
         """
         from puck_tables.kernels.quadratic import room_for_section, section_at
 
@@ -125,18 +119,11 @@ class ResultantTable(LawTable):
         return out
 
     def checked_range(self, delta: npt.ArrayLike, law: Law | None = None) -> FloatArray:
-        """``delta`` as an array, refused outside the range of the table.
+        """Dimensionless heights as an array, refused outside the range of the table.
 
-        Parameters
-        ----------
-        delta : dimensionless heights
-        law : the pressure law that friction is wanted under, uniform pressure where left out
-
-        Raises
-        ------
-        InputError
-            If a height is not finite, negative or above the largest of the table, or the table is
-            of another law.
+        ``law``: the pressure law that friction is wanted under, uniform pressure where left out.
+        Raises InputError if a height is not finite, negative or above the largest of the table, or
+        the table is of another law.
         """
         law = law or law_of("uniform")
         if self.law != law:
@@ -255,21 +242,9 @@ class ResultantTable(LawTable):
     def validate(self, progress: Progress | None = None, points: int | None = None) -> CheckReport:
         """Judge the table by the law itself, under uniform pressure also by direct quadrature.
 
-        Parameters
-        ----------
-        progress : callable (done, total), optional
-        points : int, optional
-            Number of random points.
+        At so many random ``points``, next to the singular lines, in every cell and at every node;
+        other points at every call.
 
-        Returns
-        -------
-        CheckReport
-            Deviations from the law (closed forms under uniform pressure) at random points, next to
-            the singular lines, in every cell and at every node; under uniform pressure also from
-            direct quadrature.  Other points at every call.
-
-        Examples
-        --------
         >>> ResultantTable.shipped().validate(points=50).passed
         True
         """

@@ -21,14 +21,7 @@ from puck_tables.table.table import Table
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LawTable(Table):
-    """A table over the slip angle under a pressure law.
-
-    Parameters
-    ----------
-    values : array (nodes of φ, …)
-        At the nodes of ``axis``.
-    law : Law
-    """
+    """A table over the slip angle under a pressure law; ``values`` (nodes of φ, …)."""
 
     _: KW_ONLY
     law: Law
@@ -54,14 +47,9 @@ class LawTable(Table):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SectionTable(LawTable):
-    """Functions of the slip angle of a puck of one height.
+    """Functions of the slip angle of a puck of one height; ``values`` (nodes of φ, functions).
 
-    Parameters
-    ----------
-    values : array (nodes of φ, functions)
-    law : Law
-    delta : dimensionless height 2fh/r
-    cotangents : cot φ of the singular lines, ascending
+    ``delta``: dimensionless height 2fh/r; ``cotangents``: cot φ of the singular lines, ascending.
     """
 
     _: KW_ONLY

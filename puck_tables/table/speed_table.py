@@ -70,23 +70,12 @@ _MAP = (
 class SpeedTable(Table):
     """The friction integrals at all slips of one law f(|u|), for pucks of every height.
 
-    Parameters
-    ----------
-    values : array (nodes, 4)
-        p_a, p_b, p_d, p_e at the nodes of all patches, one after the other, ζ running fastest.
-    breaks : array (k + 1,), m/s
-        Speeds from 0 to the top between which the patches lie.
-    cells : integer array (patches, 2)
-        Cells along ξ and ζ of every patch, see :mod:`puck_tables.kernels.speed_spline`.
-    law : SpeedLaw or FrictionLaw, optional
-        The friction law; none if it was given as a function.
-    pressure : Law
-        The pressure law.
-    reach : float
-        The part of the radius on which the load stands.
+    ``values`` (nodes, 4): p_a, p_b, p_d, p_e at the nodes of all patches, one after the other, ζ
+    running fastest; ``breaks`` (k + 1,): speeds from 0 to the top between which the patches lie,
+    m/s; ``cells`` (patches, 2): along ξ and ζ of every patch, see
+    :mod:`puck_tables.kernels.speed_spline`; ``law``: none if it was given as a function; ``reach``:
+    the part of the radius on which the load stands.
 
-    Notes
-    -----
     Errors are those of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e in units of the
     largest f of the law up to the top.
     """
@@ -163,16 +152,7 @@ class SpeedTable(Table):
     def integrals(self, phi: npt.ArrayLike, speed: npt.ArrayLike) -> PatchIntegrals:
         """The interpolated integrals, see :func:`puck_tables.contact.speed_quadrature`.
 
-        Parameters
-        ----------
-        phi : array_like, radians, in [−π/2, π/2]
-        speed : array_like, m/s
-            Q = hypot(v, rω), broadcast against ``phi``; v + r|ω| within the table.
-
-        Raises
-        ------
-        InputError
-            If an argument is out of range; nothing is extrapolated.
+        Arguments and errors as of :meth:`resultants`.
         """
         angle, Q = broadcast(phi=checked_phi(phi), speed=checked_speed(speed))
         direction = slip_direction(angle)
@@ -239,12 +219,7 @@ class SpeedTable(Table):
         return height_ratio / (4.0 * self.round_load.mean_square)
 
     def refuse_height(self, height_ratio: float) -> None:
-        """Refuse a puck part of whose base would lift anywhere in the table.
-
-        Raises
-        ------
-        ContactError
-        """
+        """Raise ContactError for a puck part of whose base would lift anywhere in the table."""
         if height_ratio == 0.0:
             return
         cells, lever = self.cells.tolist(), self.lever(height_ratio)
@@ -266,27 +241,10 @@ class SpeedTable(Table):
     ) -> CheckReport:
         """Judge the table by quadrature.
 
-        Parameters
-        ----------
-        progress : callable (done, total), optional
-        points : how many points are compared at random, as many next to φ = 0, π/4, π/2, as many
-            where a rim slips at one of the breaks, and as many or more in all patches alike
-        law : callable, optional
-            The friction law, where the table was made of a function and does not hold it.
+        So many ``points`` are compared at random, as many next to φ = 0, π/4, π/2, as many where a
+        rim slips at one of the breaks, and as many or more in all patches alike.  ``law``: where
+        the table was made of a function and does not hold it; InputError if it is not given then.
 
-        Returns
-        -------
-        CheckReport
-            Deviations of cos φ p_a, sin φ p_b, sin φ p_d and cos φ p_e in units of the largest f of
-            the law; the second place of a deviation is v + r|ω| in m/s.
-
-        Raises
-        ------
-        InputError
-            If the law is a function and is not given.
-
-        Examples
-        --------
         >>> def f(u):
         ...     return 0.2 + 0.1 * u
         >>> table = SpeedTable.build(f, top_speed=1.0, accuracy=1e-4)
