@@ -182,6 +182,31 @@ def test_times_with_jitter_are_kept(tmp_path: Path):
     assert track.time.tolist() == times
 
 
+def stamped(folder: Path, times: np.ndarray, digits: int) -> np.ndarray:
+    """The times of a track whose stamps have so many digits behind the point."""
+    rows = "".join(f"{t:.{digits}f},{n},2\n" for n, t in enumerate(times))
+    return read(folder, "t,x,y\n" + rows, unit="m")[0].time
+
+
+@pytest.mark.parametrize("rate", [24.0, 30.0 / 1.001, 59.5, 120.0, 240.0, 480.0, 600.0])
+@pytest.mark.parametrize("begin", [0.0, -0.3, 1.7e9])
+def test_rounded_stamps_of_even_frames_are_these(tmp_path: Path, rate: float, begin: float):
+    frames = np.delete(np.arange(90.0), [4, 31, 32])  # three are lost
+    time = stamped(tmp_path, begin + frames / rate, 3)
+    # a rate that is none of usual ones is told to 3e-4 of itself
+    assert np.abs(np.diff(time) * rate - np.diff(frames)).max() < (1e-9 if rate != 59.5 else 3e-4)
+
+
+def test_stamps_that_are_not_even_are_kept(tmp_path: Path):
+    rng = np.random.default_rng(5)
+    for times in (
+        np.arange(80) / 120.0 + rng.normal(0.0, 1e-3, 80), np.cumsum(np.linspace(0.2, 0.4, 9)),
+        np.arange(40) / 50.0, np.arange(5) / 60.0,
+    ):  # fmt: skip
+        rounded = np.round(np.sort(times), 3)
+        assert_allclose(stamped(tmp_path, rounded, 3), rounded, rtol=1e-12)
+
+
 @pytest.mark.thorough
 def test_many_rows_are_read_block_by_block_as_few_are(tmp_path: Path):
     rng = np.random.default_rng(5)

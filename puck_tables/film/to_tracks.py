@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.units import PIXEL, factor
@@ -18,6 +20,11 @@ _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scorin
 _STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock
 _EPOCH = (5e8, 4e9)  # s since 1970: 1985 to 2096
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
+_FEWEST_STAMPS, _MOST_DIGITS = 6, 12  # of which is told that they round even frames; of each
+_WHOLE = 1e-3  # of a unit: so near to whole ones clocks of years are
+_FINE, _LOOSE = 1e-3, 1.1  # of a frame: rounding that nobody sees; of the unit: slope of the line
+_SKIPS = 1.75  # of a usual step: more, and a frame was left out
+_NTSC = 1.001  # 30/1.001 frames a second, and the like
 
 
 def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
@@ -36,6 +43,8 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
     scaled: list[str] = []
     scale = _Scale(path, film, how, scaled)
     times = [_times(path, film, flat, how) for flat in film.bodies]
+    if how.fps is None:
+        times = _of_even_frames(times)
     film.bodies = [summed(path, film, flat, time)
                    for flat, (time, _) in zip(film.bodies, times, strict=True)]  # fmt: skip
     notes, tracks, there = [film.kind, *film.notes, *scaled], [], list[str]()
@@ -198,6 +207,36 @@ def _times(
             "(--columns 't [ms],x,y')"
         )
     return body.time - first, ["times taken as seconds, of which the file says nothing", *said]
+
+
+def _of_even_frames(
+    times: list[tuple[FloatArray, list[str]]],
+) -> list[tuple[FloatArray, list[str]]]:
+    """Stamps that round the times of even frames become these: rounding is no jitter."""
+
+    def are_whole(unit: npt.ArrayLike) -> bool:
+        return bool((np.abs(stamps / unit - np.rint(stamps / unit)) < _WHOLE).all())
+
+    stamps = np.unique(np.concatenate([time[~np.isnan(time)] for time, _ in times]))
+    if stamps.size < _FEWEST_STAMPS:
+        return times
+    steps, size = np.diff(stamps), np.maximum(np.abs(stamps), np.diff(stamps).min())
+    usual = float(steps[steps < _SKIPS * np.median(steps)].mean())
+    units = (10.0 ** (np.floor(np.log10(size)) - digits) for digits in range(_MOST_DIGITS))
+    unit = next((one.max() for one in units if are_whole(one.max()) or are_whole(one)), 0.0)
+    frame = np.append(0.0, np.cumsum(np.maximum(np.rint(steps / usual), 1.0)))
+    apart = frame - frame.mean()
+    step = float(apart @ stamps / (apart @ apart))
+    off, spread = np.ptp(stamps - step * frame), unit / math.sqrt(12.0 * float(apart @ apart))
+    if unit < _FINE * usual or not _FINE * unit < off < _LOOSE * unit:
+        return times
+    rates = np.maximum([np.rint(1.0 / step), np.rint(_NTSC / step) / _NTSC], 1.0)
+    usual = float(1.0 / rates[np.abs(1.0 / rates - step).argmin()])
+    step = usual if abs(usual - step) < 3.0 * spread else step
+    even = stamps[0] + step * frame
+    note = f"times are rounded to {unit:.3g} s: taken as even, {1.0 / step:.6g} frames a second"
+    even = np.append(even, np.nan)  # of what is no number, behind all stamps
+    return [(even[np.searchsorted(stamps, time)], [*notes, note]) for time, notes in times]
 
 
 def _all_times(film: Film) -> FloatArray:
