@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 from pathlib import Path
 
 import numpy as np
@@ -90,15 +89,12 @@ def test_targets_under_the_puck():
     ("target", "options", "words"),
     [
         (TARGETS, {"spin": [1.0, 2.0]}, "shape"),
-        ([(1.0, math.nan)], {}, "target"),
         (np.ones((3, 3)), {}, "one place"),
         (TARGETS, {"speed": 0.0}, "greater than 0"),
-        (TARGETS, {"speed": 1.0, "spin": 1.0}, "give one of them"),
         (TARGETS, {"threads": 0}, "threads"),
         ([(1.7e308, 1.7e308), (1.0, 0.0)], {"spin": 1.0}, "use larger units"),
         (TARGETS, {"spin": 1e300}, "out of the range of floating point"),
         (TARGETS, {"speed": 1e-200}, "out of the range of floating point"),
-        (TARGETS, {"count": 0}, "count"),
     ],
 )
 def test_bad_aims(target: object, options: dict, words: str):

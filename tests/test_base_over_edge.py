@@ -218,18 +218,6 @@ def test_no_height_is_flat(law: Any):
     np.testing.assert_allclose(low, flat, rtol=1e-12, atol=1e-15)
 
 
-def test_a_law_that_is_a_number_is_that():
-    edges, launch = [Edge((0.05, 0.0), normal=(-1.0, 0.3))], Launch((0.4, 0.2), spin=7.0)
-    for height in (0.0, 0.06):
-        box = replace(BOX, height=height)
-        ends = [
-            Scene(box, Floor(law=law), launch, edges=edges).simulate().last  # type: ignore[union-attr]
-            for law in ("", [[0.0, 0.3], [9.0, 0.3]])
-        ]
-        for name in ("x", "y", "orientation", "vx", "vy", "spin"):
-            assert abs(ends[0][name] - ends[1][name]) < 1e-6, name
-
-
 def test_strips_and_patches_are_felt_under_what_is_left():
     """Of a flat body friction is that under each part, of a pressure that knows nothing of it."""
     floors = (
@@ -422,17 +410,6 @@ def test_a_box_that_slides_square_to_an_edge_slows_down_as_ever_and_tips():
     assert abs(run.end_time - (1.0 - speed) / DECEL) < 1e-9
     assert abs(run.last["vx"] - speed) < 1e-9
     assert abs(run.last["spin"]) < 1e-9
-
-
-@pytest.mark.parametrize("height", [0.0, 0.08])
-def test_mirror_images(height: float):
-    ends = []
-    for side in (1.0, -1.0):
-        launch = Launch((0.4, side * 0.2), spin=side * 7.0)
-        edge = Edge((0.05, 0.0), normal=(-1.0, side * 0.3))
-        run: Any = Scene(replace(BOX, height=height), launch=launch, edges=[edge]).simulate()
-        ends.append([run.last["x"], side * run.last["y"], side * run.last["orientation"]])
-    np.testing.assert_allclose(ends[0], ends[1], atol=1e-9 if height == 0.0 else 1e-7)
 
 
 @pytest.mark.parametrize("height", [0.0, 0.08])

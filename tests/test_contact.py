@@ -75,14 +75,6 @@ def test_compiled_resultants(golden):
     assert_close(got, golden["rho"], CLOSED_TOLERANCE, RESULTANTS, phi=phi, delta=delta)
 
 
-def test_compiled_resultants_one_by_one(golden):
-    for i in range(0, golden["phi"].size, 7):
-        got = resultants(float(golden["phi"][i]), float(golden["delta"][i]))
-        np.testing.assert_allclose(
-            np.array(got), golden["rho"][:, i], rtol=0.0, atol=CLOSED_TOLERANCE
-        )
-
-
 def test_uncompiled_closed_form(golden):
     angle, phi, delta = golden["angle"], golden["phi"], golden["delta"]
     p = closed_form.integrals(angle)

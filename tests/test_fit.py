@@ -127,6 +127,7 @@ def test_drag_by_look_up_is_drag_integrated():
     assert np.abs(found - expected).max(axis=1) == pytest.approx([0.0, 0.0, 0.0], abs=2e-6)
 
 
+@pytest.mark.thorough
 def test_drag_is_found_and_told_from_none():
     true = film_judge.path(VELOCITY, SPIN, DECEL, DELTA, RADIUS, TIMES, drag=0.05)
     found = pt.fit(film(true, 5), KNOWN, free=["friction", "delta", "drag"])

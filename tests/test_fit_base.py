@@ -139,17 +139,22 @@ def test_what_follows_from_a_tilt_that_is_not_told_is_not_told():
     assert not found["delta"].determined and not found["height"].determined
 
 
-def test_slopes_are_those_of_motions_nearby():
-    track, puck, _ = film(np.random.default_rng([38, 2]), "box:0.2x0.1")
-    best = pt.fit(track, pt.Puck(base=puck.base), free=("friction", "delta", "gyration")).estimate
-    problem, x = best.problem, best.x
-    slopes, kept = problem.residuals_and_jacobian(x)[1], np.ones(x.size)
-    for k in range(x.size):
+def slopes_off(best) -> dict[str, float]:
+    """Of the slopes of residuals by each number, how far the worst is off its finite difference."""
+    problem, x, off = best.problem, best.x, {}
+    slopes = problem.residuals_and_jacobian(x)[1]
+    for k, name in enumerate(problem.names):
         step = 1e-4 * max(abs(x[k]), 0.1)
         moved = [problem.residuals(x + sign * step * np.eye(x.size)[k]) for sign in (1.0, -1.0)]
         by = (moved[0] - moved[1]) / (2.0 * step)
-        kept[k] = np.abs(slopes[:, k] - by).max() / np.abs(by).max()
-    assert kept.max() < 1e-3, dict(zip(problem.names, kept, strict=True))
+        off[name] = np.abs(slopes[:, k] - by).max() / np.abs(by).max()
+    return off
+
+
+def test_slopes_are_those_of_motions_nearby():
+    track, puck, _ = film(np.random.default_rng([38, 2]), "box:0.2x0.1")
+    best = pt.fit(track, pt.Puck(base=puck.base), free=("friction", "delta", "gyration")).estimate
+    assert max(slopes_off(best).values()) < 1e-3, slopes_off(best)
 
 
 def test_a_disc_as_a_base_is_a_round_puck():
@@ -191,7 +196,7 @@ def test_what_is_of_round_pucks_is_refused():
         pt.Puck(0.04, height=0.0, friction=0.2).simulate((1.0, 0.0), orientation=1.0)
 
 
-@pytest.mark.parametrize("name", OUTLINES)
+@pytest.mark.parametrize("name", few(1, OUTLINES))
 def test_a_block_slides_as_it_stood_at_its_launch(name: str):
     track, puck, start = film(np.random.default_rng([38, 5]), name, (0.0, 0.0))
     how = {"spin": start[4], "orientation": start[5], "times": track.time}
@@ -256,13 +261,7 @@ def test_a_mark_off_the_centre_is_named_and_found(round_: bool):
     assert np.abs(off(found, puck, start)).max() < 4.0
     for name, true in zip(("mark_x", "mark_y"), mark, strict=True):
         assert abs(found[name].value - true) < 4.0 * found[name].error < 0.01
-    problem, x = found.estimate.problem, found.estimate.x
-    slopes = problem.residuals_and_jacobian(x)[1]
-    for k in range(x.size):
-        step = 1e-4 * max(abs(x[k]), 0.1)
-        moved = [problem.residuals(x + sign * step * np.eye(x.size)[k]) for sign in (1.0, -1.0)]
-        by = (moved[0] - moved[1]) / (2.0 * step)
-        assert np.abs(slopes[:, k] - by).max() < 2e-3 * np.abs(by).max(), problem.names[k]
+    assert max(slopes_off(found.estimate).values()) < 2e-3, slopes_off(found.estimate)
     held = pt.fit(off_centre, known, fixed={"mark_x": mark[0], "mark_y": mark[1]})
     assert held["friction"].error < found["friction"].error
     with pytest.raises(pt.InputError, match="mark_x, mark_y" if round_ else "has no angles"):

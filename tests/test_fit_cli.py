@@ -67,18 +67,15 @@ def test_what_is_not_determined_is_said(film):
     ("arguments", "words"),
     [
         ((), "--radius"),
-        (("--radius", 0.0381, "--free", "frictoin"), "did you mean 'friction'"),
         (("--radius", 0.0381, "--height", 0.02, "--free", "height"), "leave out one"),
         (("--radius", 0.0381, "--friction", 0.2, "--fix", "friction=0.2"), "say the same"),
         (
             ("--radius", 0.0381, "--prior", "friction=0.2"),
             "prior of friction must be a value and a standard deviation, got [0.2]",
         ),
-        (("--radius", 0.0381, "--prior", "friction=0.2:0"), "standard deviation"),
         (("--radius", 0.0381, "--fix", "delta"), "NAME=VALUE"),
         (("--radius", 0.0381, "--fix", "delta=x"), "delta must be a number, got 'x'"),
         (("--radius", 0.0381, "--fix", "delta=1_0"), "delta must be a number, got '1_0'"),
-        (("--radius", 0.0381, "--fix", "delta=nan"), "delta must be a finite number"),
         (("--radius", 0.0381, "--bound", "height=1cm:0.02"), "give each of these numbers its unit"),
         (("--radius", 0.0381, "--prior", "friction=0.2:x"), "must be a number, got 'x'"),
         (("--radius", 0.0381, "--noise", "1,2,3"), "of places (m) and of angles (rad)"),
@@ -86,13 +83,10 @@ def test_what_is_not_determined_is_said(film):
         (("--radius", 0.0381, "-o", "fit.txt"), "one of .h5, .csv, .json, .jsonl, .parquet\n"),
         (("--radius", 0.0381, "--free", ""), "--free '' must be names with commas"),
         (("--radius", 0.0381, "--laws", "uniform,"), "must be names with commas"),
-        (("--radius", 0.0381, "--fix", "friction=0"), "friction must be greater than 0, got 0\n"),
         (("--radius", 0.0381, "--wall", "1,2"), "two points"),
         (("--radius", 0.0381, "--wall", "1,2:3"), "two points"),
         (("--radius", 0.0381, "--rows", "1"), "first and of the last line of the picture"),
         (("--radius", 0.0381, "--jitter", "x"), "find"),
-        (("--radius", 0.0381, "--hold-out", "1"), "share"),
-        (("--radius", 0.0381, "--laws", "foo"), "foo"),
     ],
 )
 def test_a_refusal_is_a_sentence(film, arguments, words):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from disc_judge import slid
 from film_judge import G
+from rarely import thorough
 
 import puck_tables as pt
 from puck_tables.fitting.checked_spec import spec_of, with_law
@@ -82,7 +83,7 @@ def test_a_law_by_its_name_holds_however_fast_the_puck_slips(law):
 
 
 @pytest.mark.parametrize("how", [{}, {"push": (0.2, 0.1)}, {"belt": (0.4, -0.3)}, {"drag": 0.5}])
-@pytest.mark.parametrize(("v", "spin"), [(1.6, 35.0), (0.3, 60.0), (1.2, 8.0)])
+@pytest.mark.parametrize(("v", "spin"), [(1.6, 35.0), thorough(0.3, 60.0), thorough(1.2, 8.0)])
 def test_motions_and_their_slopes_are_those_of_the_judge(how, v, spin):
     """By launch, radius and the numbers of a law."""
     times = np.linspace(0.0, 1.0, 30)
@@ -181,6 +182,7 @@ def test_the_floor_of_many_films_is_found_where_they_tell():
     assert told > 70 and len(wrong) <= 1, wrong
 
 
+@pytest.mark.thorough
 def test_a_law_with_more_numbers_leaves_no_more_than_one_friction():
     """What is fitted again under the common noise is begun anew, and may not arrive."""
     track = film(6, lambda u: 0.15 + 0.15 * np.exp(-u / 0.2), v=1.5, spin=20.0, frames=129)

@@ -154,7 +154,8 @@ def test_a_number_on_its_bound_is_named():
     assert any("friction lies on the end of its range, 0.3" in text for text in found.remarks)
 
 
-@pytest.mark.parametrize("bounds", [thorough((3.0, 9.0)), (1.0, 2.0)])
+@pytest.mark.thorough
+@pytest.mark.parametrize("bounds", [(3.0, 9.0), (1.0, 2.0)])
 def test_bounds_of_a_base_that_lifts_hold_the_start(bounds):
     found = pt.fit(TRACK, PUCK, bounds={"delta": bounds})["delta"]
     assert found.value == pytest.approx(bounds[0], abs=1e-3) and found.at_bound
@@ -242,8 +243,8 @@ def test_what_is_no_track_is_refused(tracks):
 @pytest.mark.parametrize(
     ("radius", "angle", "words"),
     [
-        (0.04, -1.0, "if angles, or y, grew the other way"),
-        (0.04, 180.0 / math.pi, "if angles were in degrees"),
+        thorough(0.04, -1.0, "if angles, or y, grew the other way"),
+        thorough(0.04, 180.0 / math.pi, "if angles were in degrees"),
         thorough(0.04, math.pi / 180.0, "if angles were in rad"),
         (0.06, 1.0, "with a radius of 0.04 m (said to be 0.06 m)"),
         (0.04, 1.0, ""),
@@ -260,6 +261,7 @@ def test_what_was_said_wrongly_is_found_out(radius, angle, words):
     assert bool(found.complaints) is bool(words)
 
 
+@pytest.mark.thorough
 def test_angles_the_other_way_are_found_out_after_a_hand():
     rng = np.random.default_rng(0)
     times = np.arange(-36, 200) / 120.0

@@ -48,6 +48,7 @@ def test_the_law_of_many_films_is_chosen(law):
     assert right == 10
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("law", "words"), few(1, [
     ("annulus:0.8", "outside 0.8 r alone"), ("hertz", "as hertz"), ("ring", "as ring"),
 ]))  # fmt: skip

@@ -72,6 +72,7 @@ def test_a_floor_whose_friction_falls_with_speed_is_named(seed):
     assert asked.chi2 / asked.degrees < 1.5 and asked.noise[0] < 0.5 * found.noise[0]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", few(1, range(20)))
 def test_a_mark_a_little_off_the_centre_is_named_first(seed):
     """Five times the noise: a level table was blamed for it."""
@@ -174,6 +175,7 @@ def test_what_slows_a_puck_is_named_before_jitter_radius_or_a_hand(seed, spinnin
     assert not any("jitter" in text for text in found.remarks)
 
 
+@pytest.mark.thorough
 def test_other_readings_are_followed_about_as_far_as_they_tell(monkeypatch):
     """Angles without noise: a law over slip speed led along a valley for thousands of steps."""
     puck = pt.Puck(radius=0.0381, height=0.0254, friction=0.15)

@@ -48,6 +48,7 @@ def test_friction_of_slides_along_a_line():
     assert (np.abs(rows[:, :2]) < 4.5).all() and rows[:, 2].mean() > 0.8
 
 
+@pytest.mark.thorough
 def test_few_frames_do_not_widen_an_error_by_chance():
     rng, wide = np.random.default_rng(3), []
     for _ in range(60):
@@ -60,7 +61,7 @@ def test_few_frames_do_not_widen_an_error_by_chance():
 def test_an_error_that_is_widened_is_told_to_be():
     track = slide(np.random.default_rng(3), most=120)[0]
     beat, told = np.sin(np.linspace(0.0, 25.0, track.time.size)), []
-    for size in np.linspace(0.0, 8e-4, 17):
+    for size in np.linspace(0.0, 8e-4, 9):
         swung = np.stack([track.place[:, 0] + size * beat, track.place[:, 1]], axis=1)
         found = pt.fit(
             pt.Track(track.time, swung, None, "swung"), pt.Puck(0.04),

@@ -127,14 +127,6 @@ def test_what_stands_tips_where_a_push_or_its_tray_brings_its_load_to_its_border
     assert abs(run.end_time - 0.5) < 1e-9 and abs(run.last["y"] - 0.25 * held) < 1e-9
 
 
-def test_mirror_images():
-    ends = []
-    for side in (1.0, -1.0):
-        run: Any = Scene(LIFTED, launch=Launch((0.4, side * 0.1), spin=side * 5.0)).simulate()
-        ends.append([run.last["x"], side * run.last["y"], side * run.last["orientation"]])
-    np.testing.assert_allclose(ends[0], ends[1], atol=1e-8)
-
-
 def test_on_boards_and_floors_too():
     stone = replace(Puck(0.12, base=Base.box(0.2, 0.1), friction=0.3), height=0.25, name="a",
                     launch=Launch((0.9, 0.1), spin=2.0))  # fmt: skip

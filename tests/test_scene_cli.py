@@ -61,7 +61,6 @@ def test_options_are_numbers_of_the_scene():
         (("simulate", "--scene", "incline", "--exact"), "--exact has no place in a scene"),
         (("simulate", "--scene", "incline", "--set", "floor.slope=0.5"), "it may never stop"),
         (("sweep", "--scene", "incline"), "no number of the scene is a range"),
-        (("simulate",), "--v0"),
         (("scene", "show", "nothing"), "there are air-hockey"),
         (("simulate", "--scene", "pivoted-disc", "--v0", "1,1"), "the pivot allows"),
         (("simulate", "--scene", "air-hockey", "--set", "launch.position=[9,9]"), "wall[1]"),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from random_scenes import draw
-from rarely import nightly
+from rarely import nightly, thorough
 from report import written
 from scene_truth import truth
 from scenes import simulate_scene
@@ -108,7 +108,7 @@ def _error(run: Run, best: Run, size: np.ndarray) -> float:
     )
 
 
-@pytest.mark.parametrize("seeds", [range(60), nightly(range(60, 400))])
+@pytest.mark.parametrize("seeds", [range(30), thorough(range(30, 60)), nightly(range(60, 400))])
 def test_tol_is_kept(seeds: range) -> None:
     """Few scenes multiply every error; there the finest runs differ by as much of their tol."""
     unstable = []

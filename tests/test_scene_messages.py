@@ -27,13 +27,10 @@ def puck(*arguments: str) -> Result:
     ("text", "said"),
     [
         (b"[puck]\nradius = " + b"1" * 5000, "a number in it has thousands of digits"),
-        (b"[puck]\nradius = 0x" + b"f" * 5000, "puck.radius = a whole number of thousands of dig"),
         (b"[launch]\nvelocity = [0x" + b"f" * 5000 + b", 1]", "launch.velocity[0] = a whole numb"),
         (b"a = " + b"[" * 5000, "nested too deeply"),
         (b'title = "\xff"', "is not text in UTF-8: see its byte 9"),
-        (b'title = "a\\u0000b"\n[puck]\nradius = 1', "title = 'a\\x00b': must be a text without"),
         (b'title = "\\u001b[2J"\n[puck]\nradius = 1', "title = '\\x1b[2J': must be"),
-        (b'[puck]\nradius = 1\n"\\u001b[2J" = 1', "puck.'\\x1b[2J': no such entry"),
         (b'[puck]\nradius = 1\n"\\u009b2J" = 1', "puck.'\\x9b2J': no such entry"),
     ],
 )
@@ -53,10 +50,9 @@ def test_a_change_that_is_none(change: str) -> None:
     assert puck("simulate", "--scene", "incline", "--set", change).exit_code == 2
 
 
-@pytest.mark.parametrize("title", ["$x_1^{", "ünïcode \N{SNOWMAN}", "a\N{NO-BREAK SPACE}b"])
-def test_a_title_is_any_line_of_text(title: str, tmp_path: Path) -> None:
+def test_a_title_is_any_line_of_text(tmp_path: Path) -> None:
     file = tmp_path / "scene.toml"
-    file.write_text(f"title = '{title}'\n{HEAD}")
+    file.write_text(f"title = '$x_1^{{ ünïcode \N{SNOWMAN} a\N{NO-BREAK SPACE}b'\n{HEAD}")
     outputs = ("-o", str(tmp_path / "run.h5"), "--plot", str(tmp_path / "run.png"))
     assert puck("simulate", "--scene", str(file), *outputs).exit_code == 0
 

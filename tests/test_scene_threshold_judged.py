@@ -5,7 +5,7 @@ from rarely import few
 from threshold_judge import draw, judged, truth
 
 
-@pytest.mark.parametrize("index", few(4, [0, 2, 4, 11, 1, 3, 15, 16]))
+@pytest.mark.parametrize("index", few(3, [2, 4, 11, 0, 1, 3, 15, 16]))
 def test_next_to_the_limit(index, tmp_path):
     scene = draw(1, index)
     word, share, why, steps = judged(scene, truth(scene), 1e-6, tmp_path)

@@ -71,24 +71,6 @@ def test_blocks_of_launches_too_large_are_results_too(tmp_path: Path):
     assert np.isnan(some.load().stop_x[1, 0])
 
 
-def test_other_stores_are_kept_and_replaced_on_demand(tmp_path: Path):
-    path = tmp_path / "m.zarr"
-    PUCK.sweep([1.0, 2.0], 1.0, store=path)
-    before = content(path)
-    for arguments in ({"speed": 2.0}, {"speed": 1.0, "radius": 2.0}, {"speed": 1.0, "tol": 1e-5}):
-        with pytest.raises(InputError, match="holds other work"):
-            PUCK.sweep([1.0, 2.0], store=path, **arguments)
-    assert content(path) == before
-    assert PUCK.sweep([1.0, 2.0], 2.0, store=path, overwrite=True).load().stop_time.shape == (2,)
-    zarr.create_group(tmp_path / "theirs.zarr", attributes={"mine": 1})
-    theirs = content(tmp_path / "theirs.zarr")
-    for overwrite in (False, True):
-        with pytest.raises(InputError, match="no Zarr store of this program"):
-            PUCK.sweep([1.0], 1.0, store=tmp_path / "theirs.zarr", overwrite=overwrite)
-    assert content(tmp_path / "theirs.zarr") == theirs
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["m.zarr", "theirs.zarr"]
-
-
 def test_a_full_disk_is_a_sentence_and_what_is_kept_stays(tmp_path, monkeypatch):
     true, calls = safe_write.hold, itertools.count()
 

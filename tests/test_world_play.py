@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-import pickle
 from typing import Any
 
-import numpy as np
 import pytest
-from boards import draw, puck_at
+from boards import puck_at
 from rarely import few
 
 import puck_tables as pt
@@ -18,20 +16,6 @@ J = 0.2 * 9.80665  # of the pucks of boards.py
 
 def mallet(*rows: tuple[float, float, float]) -> pt.Puck:
     return pt.Puck(0.05, path=rows, name="mallet", restitution=0.0)
-
-
-def test_a_world_goes_on_from_a_pickle_to_the_bit():
-    world = draw(3, 6).world()
-    world.advance(0.3)
-    kept = pickle.dumps(world)
-    again = pickle.loads(kept)
-    assert len(kept) < 1_000_000
-    world.strike(0, (0.5, 0.0))
-    again.strike(0, (0.5, 0.0))
-    world.advance(2.0)
-    again.advance(2.0)
-    assert np.array_equal(world.state(), again.state())
-    assert world.events_since(0.0) == again.events_since(0.0)
 
 
 def test_a_mallet_pushes_until_it_stops():
@@ -60,14 +44,6 @@ def test_a_heavy_puck_pushes_a_light_one_that_brakes_more():
     decel = (1.0 * 0.1 + 0.25 * 0.3) / 1.25 * 9.80665
     assert run.end_time == pytest.approx(0.8 / decel, abs=1e-9)
     assert run.last["x"][0] == pytest.approx(0.8**2 / (2 * decel), abs=1e-9)
-
-
-def test_a_stack_on_a_slope_rests_against_its_cushion():
-    wall = pt.Wall((0.5, 0.0), normal=(-1.0, 0.0), restitution=0.5)
-    pucks = [puck_at(x, 0.0, friction=0.15, restitution=0.5, height=0.0) for x in (0.0, 0.2)]
-    run = pt.Scene(pucks=pucks, floor=pt.Floor(slope=0.3), walls=[wall]).simulate()
-    assert run.end == "at rest"
-    assert run.last["x"] == pytest.approx([0.41, 0.47], abs=1e-9)
 
 
 def test_a_slope_with_drag_is_that_of_one_puck():

@@ -31,8 +31,8 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "sweep scene": (
         ["sweep", "--scene", "incline", "--set", "launch.spin=0:9:3", "-o", "{}.h5"], "{}.h5"
     ),
-    "asperity csv": (["asperity", "-o", "{}.csv"], "{}.csv"),
-    "asperity png": (["asperity", "--plot", "{}.png"], "{}.png"),
+    "asperity csv": (["asperity", "--speeds", "0:9:9", "-o", "{}.csv"], "{}.csv"),
+    "asperity png": (["asperity", "--speeds", "0:9:9", "--plot", "{}.png"], "{}.png"),
     "sweep csv": (["sweep", "--w0", "0:1:9", "-o", "{}.csv"], "{}.csv"),
     "sweep h5": (["sweep", "--w0", "0:1:9", "-o", "{}.h5"], "{}.h5"),
     "sweep png": (["sweep", "--w0", "0:1:9", "--plot", "{}.png"], "{}.png"),

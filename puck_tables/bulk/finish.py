@@ -48,12 +48,8 @@ class Stored(Result):
     def load(self) -> Result:
         """The result in memory.
 
-        Raises
-        ------
-        InputError
-            If it does not fit, or blocks are damaged or missing.
-        OutputError
-            If the store holds other work by now.
+        InputError if it does not fit, or blocks are damaged or missing; OutputError if the store
+        holds other work by now.
         """
         from puck_tables.bulk.store import Store
 

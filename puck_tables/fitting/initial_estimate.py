@@ -205,7 +205,8 @@ def without_ends(film: Observations) -> list[Observations]:
 
 def _out(result: Estimate, x: slice) -> Mask:
     """Which frames of a track, whose residuals along x are these, are outliers."""
-    return ~result.kept[x] & (result.problem.kinds[x] != UNSEEN)
+    out: Mask = ~result.kept[x] & (result.problem.kinds[x] != UNSEEN)
+    return out
 
 
 def begins_off(result: Estimate) -> str:

@@ -59,13 +59,8 @@ class Answer(Result):
     def __call__(self, times: npt.ArrayLike) -> Answer:
         """The answer with its states at other times, s, ≥ 0, in any order.
 
-        Raises
-        ------
-        InputError
-            If one is later than a case that never stops is followed.
+        InputError if one is later than a case that never stops is followed.
 
-        Examples
-        --------
         >>> reference_case("slide")([0.5, 0.0]).vx.round(6).tolist()
         [0.019, 1.0]
         """
