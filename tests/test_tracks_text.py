@@ -197,6 +197,18 @@ def test_rounded_stamps_of_even_frames_are_these(tmp_path: Path, rate: float, be
     assert np.abs(np.diff(time) * rate - np.diff(frames)).max() < (1e-9 if rate != 59.5 else 3e-4)
 
 
+def test_stamps_too_coarse_for_their_frames_ask_for_their_rate(tmp_path: Path):
+    times = np.arange(90.0) / 240.0
+    with pytest.raises(InputError, match="or give frames a second"):
+        stamped(tmp_path, times, 2)
+    text = "t,x,y\n" + "".join(f"{t:.2f},1,2\n" for t in times)
+    (track,) = read(tmp_path, text, unit="m", fps=240.0)
+    assert_allclose(track.time, times, rtol=1e-12)
+    assert "its own times are not used" in track.notes[-1]
+    with pytest.raises(InputError, match="not those of 230 frames a second"):
+        read(tmp_path, text, unit="m", fps=230.0)
+
+
 def test_stamps_that_are_not_even_are_kept(tmp_path: Path):
     rng = np.random.default_rng(5)
     for times in (
@@ -275,7 +287,7 @@ def test_what_is_wrong_is_said_in_a_sentence(tmp_path: Path, text: str):
         ({"scale": 0}, "greater than 0"), ({"scale": "-1mm"}, "greater than 0"),
         ({"scale": "0.5"}, "a number and a unit"), ({"scale": "2px"}, "a length, not pixels"),
         ({"scale": "1mm", "unit": "cm"}, "leave unit = 'cm' out"), ({"fps": 0}, "fps"),
-        ({"fps": math.nan}, "fps"), ({"fps": 10, "unit": "m"}, "leave fps"),
+        ({"fps": math.nan}, "fps"), ({"fps": 3, "unit": "m"}, "leave fps"),
         ({"unit": "m", "columns": "t,x"}, "has 3 columns, and columns names 2"),
         ({"unit": "m", "pucks": "red"}, "no puck 'red'"),
         ({"unit": "m", "likelihood": 0.5}, "no likelihoods"), ({"likelihood": 2}, "0 to 1"),

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
 from puck_tables._core.arrays import FloatArray
 from puck_tables._core.units import PIXEL, factor
@@ -15,16 +13,9 @@ from puck_tables._core.wording import counted, meant
 from puck_tables.errors import InputError
 from puck_tables.film.film import Film, Track, TrackedBody, on_the_floor, summed
 from puck_tables.film.reader_options import ReaderOptions
+from puck_tables.film.time_stamps import of_even_frames, times_of
 
 _SURE = 1.5  # likelihoods above are no shares of 1, whatever rounding or scoring did
-_STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clock
-_EPOCH = (5e8, 4e9)  # s since 1970: 1985 to 2096
-_SLOW = 1.0  # s between frames: more, and times are hardly in seconds
-_FEWEST_STAMPS, _MOST_DIGITS = 6, 12  # of which is told that they round even frames; of each
-_WHOLE = 1e-3  # of a unit: so near to whole ones clocks of years are
-_FINE, _LOOSE = 1e-3, 1.1  # of a frame: rounding that nobody sees; of the unit: slope of the line
-_SKIPS = 1.75  # of a usual step: more, and a frame was left out
-_NTSC = 1.001  # 30/1.001 frames a second, and the like
 
 
 def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]:
@@ -42,9 +33,9 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
     film.bodies = [on_the_floor(path, film, body, how.up) for body in film.bodies]
     scaled: list[str] = []
     scale = _Scale(path, film, how, scaled)
-    times = [_times(path, film, flat, how) for flat in film.bodies]
+    times = [times_of(path, film, flat, how) for flat in film.bodies]
     if how.fps is None:
-        times = _of_even_frames(times)
+        times = of_even_frames(times)
     film.bodies = [summed(path, film, flat, time)
                    for flat, (time, _) in zip(film.bodies, times, strict=True)]  # fmt: skip
     notes, tracks, there = [film.kind, *film.notes, *scaled], [], list[str]()
@@ -70,6 +61,8 @@ def to_si(path: str | Path, film: Film, how: ReaderOptions) -> tuple[Track, ...]
             except InputError as error:  # one puck of many may spoil all
                 many = len(film.bodies) > 1 and how.pucks is None
                 hint = "; or say which pucks to read with pucks (--pucks)" if many else ""
+                if (np.diff(time[rows]) == 0.0).any():
+                    hint += "; or give frames a second (--fps 120) where times are rounded so far"
                 raise InputError(f"{name}: {error}{hint}") from None
             tracks.append(track)
     words = {part for name in there for part in (name, *name.split(" ", 1))}
@@ -164,86 +157,6 @@ def _besides(film: Film, how: ReaderOptions) -> str:
     more = ["angle_unit (--angle-unit deg)"] if angled else []
     more += [] if timed else ["frames a second (--fps 120)"]
     return f"; give {' and '.join(more)}, too" if more else ""
-
-
-def _times(
-    path: str | Path, film: Film, body: TrackedBody, how: ReaderOptions
-) -> tuple[FloatArray, list[str]]:
-    """Times in s, and what they are from."""
-    size = len(next(iter(body.marks.values())))
-    for clock in (body.frame, body.time):
-        if clock is not None and np.isinf(clock).any():
-            raise InputError(f"{path} has times or frame numbers that are no numbers")
-    if how.fps is not None:
-        if body.frame is not None:
-            unused = "; its own times are not used" if body.time is not None else ""
-            return body.frame / how.fps, [f"{how.fps:.9g} frames a second, as given{unused}"]
-        if body.time is not None:
-            raise InputError(f"{path} has times and no frame numbers: leave fps (--fps) out")
-        return np.arange(size) / how.fps, [f"each row a frame, {how.fps:.9g} a second, as given"]
-    if body.time is None:
-        what = "frame numbers and no times" if body.frame is not None else "no times"
-        row = "" if body.frame is not None else "; each row is then a frame"
-        raise InputError(f"{path} has {what}: give frames a second with fps (--fps 120){row}")
-    earliest = float(_all_times(film).min())
-    stamps = (one for one in ("s", "ms", "us", "ns")
-              if _EPOCH[0] < earliest * factor(one, "time") < _EPOCH[1])  # fmt: skip
-    if not film.timed and (unit := next(stamps, "")):  # where no other gives a year of films
-        film.timed = True
-        film.notes.append(f"times in {unit} since 1970, as their size tells")
-        for one in film.bodies:
-            one.time = None if one.time is None else one.time * factor(unit, "time")
-    there = _all_times(film)
-    # a first time far from 0 for so short a film is a stamp: only the time between stamps counts
-    first = float(there.min()) if abs(there.min()) > _STAMPED * np.ptp(there) > 0.0 else 0.0
-    said = [f"times from its first frame on, {first:.15g} s of its clock"] if first else []
-    if film.timed:
-        return body.time - first, said
-    apart = np.diff(body.time[~np.isnan(body.time)])
-    if apart.size and np.median(apart) > _SLOW:
-        raise InputError(
-            f"{path} does not say the unit of its times, and frames would be "
-            f"{np.median(apart):.4g} s apart: say it in the header, or with columns "
-            "(--columns 't [ms],x,y')"
-        )
-    return body.time - first, ["times taken as seconds, of which the file says nothing", *said]
-
-
-def _of_even_frames(
-    times: list[tuple[FloatArray, list[str]]],
-) -> list[tuple[FloatArray, list[str]]]:
-    """Stamps that round the times of even frames become these: rounding is no jitter."""
-
-    def are_whole(unit: npt.ArrayLike) -> bool:
-        return bool((np.abs(stamps / unit - np.rint(stamps / unit)) < _WHOLE).all())
-
-    stamps = np.unique(np.concatenate([time[~np.isnan(time)] for time, _ in times]))
-    if stamps.size < _FEWEST_STAMPS:
-        return times
-    steps, size = np.diff(stamps), np.maximum(np.abs(stamps), np.diff(stamps).min())
-    usual = float(steps[steps < _SKIPS * np.median(steps)].mean())
-    units = (10.0 ** (np.floor(np.log10(size)) - digits) for digits in range(_MOST_DIGITS))
-    unit = next((one.max() for one in units if are_whole(one.max()) or are_whole(one)), 0.0)
-    frame = np.append(0.0, np.cumsum(np.maximum(np.rint(steps / usual), 1.0)))
-    apart = frame - frame.mean()
-    step = float(apart @ stamps / (apart @ apart))
-    off, spread = np.ptp(stamps - step * frame), unit / math.sqrt(12.0 * float(apart @ apart))
-    if unit < _FINE * usual or not _FINE * unit < off < _LOOSE * unit:
-        return times
-    rates = np.maximum([np.rint(1.0 / step), np.rint(_NTSC / step) / _NTSC], 1.0)
-    usual = float(1.0 / rates[np.abs(1.0 / rates - step).argmin()])
-    step = usual if abs(usual - step) < 3.0 * spread else step
-    even = stamps[0] + step * frame
-    note = f"times are rounded to {unit:.3g} s: taken as even, {1.0 / step:.6g} frames a second"
-    even = np.append(even, np.nan)  # of what is no number, behind all stamps
-    return [(even[np.searchsorted(stamps, time)], [*notes, note]) for time, notes in times]
-
-
-def _all_times(film: Film) -> FloatArray:
-    """The times of all bodies, 0 if there are none."""
-    times = [body.time[np.isfinite(body.time)] for body in film.bodies if body.time is not None]
-    there = np.concatenate([*times, np.empty(0)])
-    return there if there.size else np.zeros(1)
 
 
 def _alike(names: Sequence[str], wanted: Sequence[str]) -> dict[str, dict[str, str]]:
