@@ -227,11 +227,9 @@ class Outputs:
     ) -> None:
         """Refuse, before any work, what could not be written, or would replace what is read.
 
-        Parameters
-        ----------
-        inputs : the files that the command reads; names that are no files are left out
-        others : further files that are written
-        saved : whether the output is a result, in the format that its ending says
+        ``inputs``: the files that the command reads; names that are no files are left out;
+        ``others``: further files that are written; ``saved``: whether the output is a result, in
+        the format that its ending says.
         """
         from puck_tables._core.safe_write import check_target
         from puck_tables.io.formats import encoder_for

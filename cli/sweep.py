@@ -346,8 +346,7 @@ def _first(value: Any) -> float:
         return value
     if isinstance(value, tuple | list):
         return float(value[0])
-    middle: float = value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high)
-    return middle
+    return value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high)
 
 
 def _all(value: Any) -> Any:

@@ -129,6 +129,23 @@ def test_frames_are_left_out_where_a_hand_touches_and_that_is_said():
     assert "--keep-all" in found.cut_off and "friction" in found.cut_off
 
 
+def test_first_frames_that_are_off_but_not_cut_are_said():
+    """A hand that keeps the speed and lets go without a jerk."""
+    rng, before = np.random.default_rng(5), np.arange(-10.0, 0.0) / 60.0
+    after = np.arange(80) / 60.0
+    true = slid(lambda _: 0.15, 0.0381, (1.5, 0.3), 25.0, after)
+    held = np.stack([1.5 * before, 0.3 * before, 25.0 * before * np.linspace(0.0, 1.0, 10)])
+    x, y, angle = np.concatenate([held, true[:3]], axis=1)
+    noise = rng.normal(size=(90, 3)) * [3e-4, 3e-4, 5e-3]
+    place = np.stack([x, y], axis=1) + noise[:, :2]
+    track = pt.Track(np.append(before, after), place, angle + noise[:, 2], "held")
+    puck = pt.Puck(radius=0.0381, height=0.0)
+    found = pt.fit(track, puck)
+    assert "first 8 frames of held are off" in found.cut_off and "--since -0.033" in found.cut_off
+    assert abs(found.numbers["friction"].value - 0.15) < 4.0 * found.numbers["friction"].error
+    assert not pt.fit(track, puck, since=-1.0).cut_off
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("how", [{"keep_all": True}, {"since": -1.0}])
 def test_frames_that_a_hand_touches_are_kept_if_asked(how):

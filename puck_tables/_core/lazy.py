@@ -20,14 +20,8 @@ _CLONE = _ROOT if (_ROOT / "pyproject.toml").is_file() else None
 def lazily(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
     """``__getattr__`` and ``__dir__`` of a package or module: what it imports for types alone.
 
-    Its source says so once, below ``if TYPE_CHECKING``.
+    Its source says so once, below ``if TYPE_CHECKING``.  ``package``: its ``__name__``.
 
-    Parameters
-    ----------
-    package : its ``__name__``
-
-    Examples
-    --------
     >>> get, listed = lazily("puck_tables")
     >>> get("Puck").__name__, get("contact").__name__, "Puck" in listed()
     ('Puck', 'puck_tables.contact', True)

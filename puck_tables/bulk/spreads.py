@@ -39,12 +39,6 @@ class Spread(ABC):
     def checked_for(self, name: str, unit: str) -> None:
         """Refuse it for a number of another unit; say so if it is of a doubtful size.
 
-        Parameters
-        ----------
-        name, unit : of what scatters
-
-        Examples
-        --------
         >>> Normal("40mm", "1mm").checked_for("spin", "rad/s")
         Traceback (most recent call last):
         ...
@@ -84,15 +78,8 @@ class Spread(ABC):
         """Its values at which the distribution function has these, inside (0, 1)."""
 
     def drawn(self, name: str, seed: int, start: int, stop: int) -> FloatArray:
-        """The numbers of some samples.
+        """The numbers of some samples; each name has a stream of its own.
 
-        Parameters
-        ----------
-        name : what scatters; each name has a stream of its own
-        seed, start, stop : of the samples
-
-        Examples
-        --------
         >>> spin = Normal(5.0, 0.2)
         >>> bool((spin.drawn("spin", 7, 0, 9)[3:5] == spin.drawn("spin", 7, 3, 5)).all())
         True

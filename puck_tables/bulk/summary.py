@@ -94,19 +94,12 @@ class Summary:
 
     def covariance(self, names: Sequence[str] | None = None) -> FloatArray:
         """Covariance (n, n) of these columns, of all without ``names``; SI units."""
-        result: FloatArray = np.atleast_2d(np.cov(self._rows(names)))
-        return result
+        return np.atleast_2d(np.cov(self._rows(names)))
 
     def quantiles(
         self, shares: npt.ArrayLike = (0.025, 0.25, 0.5, 0.75, 0.975)
     ) -> dict[str, FloatArray]:
-        """Values below which these shares of the samples lie, by column.
-
-        Raises
-        ------
-        InputError
-            If a share is not from 0 to 1.
-        """
+        """Values below which these shares of the samples lie, by column; each from 0 to 1."""
         wanted = finite_array("shares", shares, "1")
         if wanted.ndim > 1 or not wanted.size or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
             raise InputError("shares of quantiles must be numbers from 0 to 1")

@@ -110,7 +110,10 @@ def profile_integrals(
     angle = np.asarray(phi, dtype=np.float64)
     find = _sums if angle.size <= _KEPT else _sums.__wrapped__
     total = find(angle.tobytes(), radii.tobytes(), pressure.tobytes())
-    load = float(_load(radii, pressure))
+    # ∫ a² dμ(a) = 2 ∫ W ρ dρ of a profile straight between its radii
+    (inner, outer), (first, last) = (radii[:-1], radii[1:]), (pressure[:-1], pressure[1:])
+    share = first * (2.0 * inner + outer) + last * (inner + 2.0 * outer)
+    load = float(((outer - inner) * share).sum() / 3.0)
     return _five(total.reshape(3, *angle.shape) / load)
 
 
@@ -123,14 +126,6 @@ def _sums(*arrays: bytes) -> FloatArray:
         part = angle[start : start + _CHUNK]
         total[:, start : start + _CHUNK] = _pile(part, radii, pressure)
     return total
-
-
-def _load(radii: FloatArray, pressure: FloatArray) -> FloatArray:
-    """∫ a² dμ(a) = 2 ∫ W ρ dρ of a profile straight between its radii."""
-    inner, outer = radii[:-1], radii[1:]
-    first, last = pressure[:-1], pressure[1:]
-    share = first * (2.0 * inner + outer) + last * (inner + 2.0 * outer)
-    return np.asarray(((outer - inner) * share).sum() / 3.0)
 
 
 def spread(radii: FloatArray, pressure: FloatArray) -> float:

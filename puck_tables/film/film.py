@@ -182,8 +182,7 @@ class Track:
     @property
     def seen(self) -> npt.NDArray[np.bool_]:
         """Frames (n,) where the place is known."""
-        known: npt.NDArray[np.bool_] = np.isfinite(self.place[:, 0] + self.place[:, 1])
-        return known
+        return np.isfinite(self.place[:, 0] + self.place[:, 1])
 
 
 def marks_of_one(tracks: Sequence[Track], nearest: float = np.inf) -> str:

@@ -157,7 +157,7 @@ def film_below(
     """
     form = text_form_of(path, b"\n".join(head.split(b"\n")[lines:]))
     columns = [*columns] + [("", Heading(""))] * max(0, form.width - len(columns))
-    if len(columns) > form.width or any(one.role for _, one in columns[form.width :]):
+    if len(columns) > form.width:
         raise InputError(
             f"{path} names {len(columns)} columns and has {form.width}: it is damaged, or of a "
             "version that is not known; export it once more"

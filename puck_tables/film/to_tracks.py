@@ -143,8 +143,7 @@ class _Scale:
     def place(self, points: FloatArray) -> FloatArray:
         """Places (n, 2) in m; NaN where a point is."""
         if self.plane is None:
-            scaled: FloatArray = points * [self.size, -self.size if self.down else self.size]
-            return scaled
+            return points * [self.size, -self.size if self.down else self.size]
         result = np.full(points.shape, np.nan)
         there = np.isfinite(points).all(axis=1)
         result[there] = self.plane.place(points[there])

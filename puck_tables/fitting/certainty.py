@@ -246,8 +246,7 @@ def _without_parts(result: Estimate, certainty: Certainty, count: int) -> FloatA
                 changes.append(np.linalg.solve(left, mine.T @ rows[frames]))
     each = np.reshape(changes, (-1, certainty.plausible.size)) * certainty.plausible
     each -= each.mean(axis=0) if len(each) else 0.0
-    covariance: FloatArray = (1.0 - 1.0 / max(len(each), 1)) * each.T @ each
-    return covariance
+    return (1.0 - 1.0 / max(len(each), 1)) * each.T @ each
 
 
 @dataclass(frozen=True)

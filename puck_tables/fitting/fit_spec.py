@@ -126,48 +126,25 @@ _LEAST = 1e-9  # in its unit, of what must be more than 0
 
 @dataclass(frozen=True)
 class FitSpec:
-    """What is to be found and what is known.
+    """What is to be found and what is known; InputError if the friction is neither free nor known.
 
-    Parameters
-    ----------
-    puck : Puck
-        Its numbers count where nothing else is said of them.
-    free : names to be found, of :data:`PUCK`
-    fixed : values by name, of :data:`PUCK` or :data:`LAUNCH`
-    priors : (value, standard deviation) by name
-    bounds : (low, high) by name
-    start : values to begin with, besides those that the tracks suggest
-    freed : names that are found since they have a prior or bounds
-    of_impacts : what is taken of the impacts that there are, by name, where nothing else is said
-    speeds : slip speeds (m/s) at which friction coefficients are found, friction_0 and so on
-    between : cubic or linear, f between these speeds
-    law : a law over slip speed by its name, '' for none
-    base : of a puck that is not round; its reach is then the radius of ``puck``, gyration is in m
-
-    Raises
-    ------
-    InputError
-        If the friction is neither free nor known.
-
-    Examples
-    --------
     >>> spec = FitSpec(Puck(radius=0.0381), ("friction", "delta"), {}, {}, {}, {})
     >>> spec.scales({"friction": 0.2, "delta": 0.5})[0]
     1.96133
     """
 
-    puck: Puck
-    free: tuple[str, ...]
-    fixed: Mapping[str, float]
-    priors: Mapping[str, tuple[float, float]]
-    bounds: Mapping[str, tuple[float, float]]
-    start: Mapping[str, float]
-    freed: tuple[str, ...] = ()
-    of_impacts: Mapping[str, float] = field(default_factory=dict)
-    speeds: tuple[float, ...] = ()
-    between: str = "cubic"
-    law: str = ""
-    base: Base | None = None
+    puck: Puck  # its numbers count where nothing else is said of them
+    free: tuple[str, ...]  # names to be found, of PUCK
+    fixed: Mapping[str, float]  # values by name, of PUCK or LAUNCH
+    priors: Mapping[str, tuple[float, float]]  # value, standard deviation
+    bounds: Mapping[str, tuple[float, float]]  # low, high
+    start: Mapping[str, float]  # to begin with, besides what the tracks suggest
+    freed: tuple[str, ...] = ()  # found since they have a prior or bounds
+    of_impacts: Mapping[str, float] = field(default_factory=dict)  # where nothing else is said
+    speeds: tuple[float, ...] = ()  # m/s, of slip, at which friction_0 and so on are found
+    between: str = "cubic"  # or linear: f between these speeds
+    law: str = ""  # over slip speed by its name, '' for none
+    base: Base | None = None  # its reach is the radius of the puck; gyration is then in m
 
     def __post_init__(self) -> None:
         scale = self.speeds or {"friction", "decel"} & self.named

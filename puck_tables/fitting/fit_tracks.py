@@ -22,7 +22,7 @@ from puck_tables.fitting.fit_result import Fit
 from puck_tables.fitting.fit_spec import DRAGS
 from puck_tables.fitting.forecast import HeldOut, predicted, split
 from puck_tables.fitting.impact_matching import Line, SlideIndex, slides_apart
-from puck_tables.fitting.initial_estimate import initial_estimate
+from puck_tables.fitting.initial_estimate import begins_off, initial_estimate
 from puck_tables.fitting.inputs import (
     Inputs,
     begin_jitter,
@@ -308,14 +308,17 @@ def _reported(
 def _trimmed_ends(
     best: Estimate, problem: Problem, left_out: tuple[tuple[str, int, int], ...]
 ) -> str:
-    """A sentence where many frames are left out at the ends, and what they would change."""
+    """A sentence where many frames are left out at the ends, and what they would change.
+
+    Or where first ones that are off are not.
+    """
     said = [
         f"{first} frames at the start and {last} at the end of {name}"
         for (name, first, last), film in zip(left_out, best.problem.films, strict=False)
         if first + last > _MUCH * (first + last + film.time.size)
     ]
     if not said:
-        return ""
+        return begins_off(best)
     films = tuple(replace(film, cuttable=(False, False)) for film in problem.films)
     kept = initial_estimate(problem.with_films(films), refit=True)
     values = kept.problem.numbers_at(kept.x)

@@ -164,7 +164,7 @@ def trimmed(result: Estimate, uncut: tuple[Observations, ...]) -> tuple[Observat
     decel = problem.spec.scales(problem.numbers_at(result.x))[0]
     hidden = math.sqrt(2.0 * FARTHEST * problem.noise[0] / decel)
     for film, whole, (x, _, _) in zip(problem.films, uncut, problem.each(), strict=True):
-        out = ~result.kept[x] & (problem.kinds[x] != UNSEEN)
+        out = _out(result, x)
         ends = [_foreign(out), _foreign(out[::-1])]
         close = math.ceil(min(hidden / film.usual_step, _NEARBY * (out.size - sum(ends))))
         for n, before in enumerate(ends):
@@ -201,6 +201,25 @@ def without_ends(film: Observations) -> list[Observations]:
         if at is not None:
             parts.append(film.part((order >= at) != bool(end)))
     return [part for part in parts if part.time.size >= FEWEST + 2]
+
+
+def _out(result: Estimate, x: slice) -> Mask:
+    """Which frames of a track, whose residuals along x are these, are outliers."""
+    out: Mask = ~result.kept[x] & (result.problem.kinds[x] != UNSEEN)
+    return out
+
+
+def begins_off(result: Estimate) -> str:
+    """A sentence on tracks whose first frames are off the motion that is launched there."""
+    for film, (x, _, _) in zip(result.problem.films, result.problem.each(), strict=True):
+        if film.cuttable[0] and (off := _foreign(_out(result, x))):
+            start, free = film.start + film.time[[0, min(off, film.time.size - 1)]]
+            return (
+                f"The first {off} frames of {film.name} are off the motion of the others: its "
+                f"launch, at {start:.6g} s, is where that would have begun. If a hand or a wall is "
+                f"there, give --since {free:.6g} (since={free:.6g})"
+            )
+    return ""
 
 
 def _foreign(out: Mask) -> int:

@@ -78,38 +78,22 @@ PLACE, ANGLE, PRIOR, UNSEEN = range(4)  # kinds of residuals; of what does not c
 
 @dataclass(frozen=True, eq=False)
 class Problem(Slides):
-    """What least squares are asked.
-
-    Parameters
-    ----------
-    spec : what is to be found of the puck
-    films : the tracks
-    noise : standard deviations of places (m) and angles (rad)
-    tall : whether part of the base may lift
-    whole : angles of each track in one piece (None: only up to whole turns)
-    rests : whether the puck of each track rests until it is hit
-    walls : that are met, None for those to be found
-    impact_specs : impacts, in the order of time (s after the start of the first track)
-    jitter : standard deviation of time stamps, s
-    weights : what makes residuals of each track's frames independent (n, 3, 3); empty: the noise
-    known : which noise is given, and not that of the residuals
-    smooth : noise of places (m) and angles (rad) that no model judged
-    level : what a step lowers the cost by, of it, where a minimum counts as found
-    """
+    """What least squares are asked."""
 
     spec: FitSpec
     films: tuple[Observations, ...]
-    noise: tuple[float, float]
-    tall: bool = False
-    whole: tuple[FloatArray | None, ...] = ()
-    rests: tuple[bool, ...] = ()
-    walls: tuple[WallLine | None, ...] = ()
-    impact_specs: tuple[ImpactSpec, ...] = ()
-    jitter: float = 0.0
+    noise: tuple[float, float]  # standard deviations of places (m) and angles (rad)
+    tall: bool = False  # whether part of the base may lift
+    whole: tuple[FloatArray | None, ...] = ()  # angles in one piece (None: up to whole turns)
+    rests: tuple[bool, ...] = ()  # whether the puck of each track rests until it is hit
+    walls: tuple[WallLine | None, ...] = ()  # that are met, None for those to be found
+    impact_specs: tuple[ImpactSpec, ...] = ()  # in the order of time after the first track's start
+    jitter: float = 0.0  # standard deviation of time stamps, s
+    # what makes residuals of each track's frames independent (n, 3, 3); empty: the noise
     weights: tuple[FloatArray, ...] = ()
-    known: Known = field(default=Known())
-    smooth: tuple[float, float] = (math.nan, math.nan)
-    level: float = EXACT
+    known: Known = field(default=Known())  # which noise is given, and not that of the residuals
+    smooth: tuple[float, float] = (math.nan, math.nan)  # noise (m, rad) that no model judged
+    level: float = EXACT  # what a step lowers the cost by, of it, where a minimum counts as found
 
     @cached_property
     def angled(self) -> bool:

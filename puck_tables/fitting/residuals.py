@@ -313,5 +313,4 @@ def _along(moving: Moving, launch: FloatArray, times: FloatArray) -> FloatArray:
     for k, on in enumerate(onwards):
         changes[k + 1] = on @ (changes[k] + half * forces[k]) + half * forces[k + 1]
     path = CubicSpline(moments, changes).antiderivative()(np.minimum(times, end))
-    result: FloatArray = np.moveaxis(path, 0, 1)
-    return result
+    return np.moveaxis(path, 0, 1)

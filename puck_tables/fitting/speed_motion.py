@@ -122,8 +122,7 @@ def _is_fast(y: FloatArray) -> bool:
 def _ratio_at(y: FloatArray, fast: bool) -> float:
     """v/r|ω| where it spins fast, else r|ω|/v; up to 1, and hardly more next to such a motion."""
     v, rim = math.hypot(y[AHEAD], y[ASIDE]), abs(y[RIM])
-    ratio: float = v / rim if fast else (rim / v if v > 0.0 else 0.0)
-    return ratio
+    return v / rim if fast else (rim / v if v > 0.0 else 0.0)
 
 
 @inlined

@@ -50,28 +50,14 @@ class Tables:
 
 
 class TableGame:
-    """A game, the same for any number of boards.
+    """A game, the same for any number of boards."""
 
-    Attributes
-    ----------
-    scene : SceneSpec
-        The board at its start.
-    actions : int
-        Numbers of an action, each from −1 to 1.
-    low, high : FloatArray
-        Between which lies what is seen, a number for each.
-    places : slice or numbers
-        Which of them are places, m.
-    limit : int
-        Moves of a game at most.
-    """
-
-    scene: SceneSpec
-    actions: int
-    low: FloatArray
+    scene: SceneSpec  # at its start
+    actions: int  # numbers of an action, each from −1 to 1
+    low: FloatArray  # between which lies what is seen, a number for each
     high: FloatArray
-    places: slice | Whole
-    limit: int
+    places: slice | Whole  # which of them are places, m
+    limit: int  # moves of a game at most
 
     def begin(self, tables: Tables, boards: Whole, rng: np.random.Generator) -> None:
         """Begin anew on some boards."""

@@ -110,14 +110,7 @@ class ManyTables(VectorEnv[Obs, Any, Any]):
     def step(self, actions: npt.ArrayLike) -> tuple[Obs, FloatArray, Truth, Truth, dict[str, Any]]:
         """Make a move on every board: what is seen, earned, where a game ended, or was cut off.
 
-        Parameters
-        ----------
-        actions : (num_envs, numbers), from −1 to 1
-
-        Raises
-        ------
-        InputError
-            If they are no such numbers.
+        ``actions``: (num_envs, numbers), from −1 to 1, else InputError.
         """
         if not self._old:
             raise InputError("reset the environment before its first step")
@@ -140,21 +133,9 @@ class ManyTables(VectorEnv[Obs, Any, Any]):
         """What each of several actions would earn now, array (n,): to look ahead.
 
         Nothing is changed; the chances of the other side are drawn anew, for all alike.
+        ``actions``: (n, numbers), from −1 to 1, else InputError; ``moves``: for so many the same
+        action is made, and all of them earn; ``board``: by its number.
 
-        Parameters
-        ----------
-        actions : (n, numbers), from −1 to 1
-        moves : int, optional
-            For so many the same action is made; what all of them earn.
-        board : int, optional
-
-        Raises
-        ------
-        InputError
-            If they are no such numbers, or there is no such board.
-
-        Examples
-        --------
         >>> tables = ManyTables("Carrom")
         >>> seen, _ = tables.reset(seed=1)
         >>> tables.outcomes([[0.0, 0.0, 0.5], [0.2, -0.1, 0.9]]).shape

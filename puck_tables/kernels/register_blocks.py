@@ -9,14 +9,15 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.extending import intrinsic
 
 from puck_tables.kernels.as_written import BLOCK, LINE
+from puck_tables.kernels.vectors import operation, with_constants
 
 _LANES = 4  # numbers side by side in one register
 
 
-def _row_of(typing: Any, block: Any, row: Any, n: Any) -> Any:
+@with_constants
+def row_of(typing: Any, block: Any, row: Any, n: Any) -> Any:
     """Compiled (block, row, n) → number n of a row (a constant) of a flat array of such rows.
 
     Of rows of one array at known distances LLVM sees that they do not overlap, so that a loop over
@@ -33,7 +34,8 @@ def _row_of(typing: Any, block: Any, row: Any, n: Any) -> Any:
     return types.float64(block, row, n), build
 
 
-def _into_row(typing: Any, block: Any, row: Any, n: Any, value: Any) -> Any:
+@with_constants
+def into_row(typing: Any, block: Any, row: Any, n: Any, value: Any) -> Any:
     """Compiled (block, row, n, value): number n of a row is the value, see :func:`row_of`."""
     first = row.literal_value * BLOCK
 
@@ -46,11 +48,8 @@ def _into_row(typing: Any, block: Any, row: Any, n: Any, value: Any) -> Any:
     return types.void(block, row, n, types.float64), build
 
 
-row_of: Any = intrinsic(prefer_literal=True)(_row_of)
-into_row: Any = intrinsic(prefer_literal=True)(_into_row)
-
-
-def _rows_of(typing: Any, block: Any, row: Any, count: Any, n: Any) -> Any:
+@with_constants
+def rows_of(typing: Any, block: Any, row: Any, count: Any, n: Any) -> Any:
     """Compiled (block, row, count, n) → number n of so many rows from one on, as a tuple."""
     first, rows = row.literal_value, count.literal_value
 
@@ -67,7 +66,8 @@ def _rows_of(typing: Any, block: Any, row: Any, count: Any, n: Any) -> Any:
     return result(block, row, count, n), build
 
 
-def _into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:
+@with_constants
+def into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:
     """Compiled (block, row, n, values): number n of rows from one on are those of a tuple."""
     first = row.literal_value
 
@@ -83,11 +83,8 @@ def _into_rows(typing: Any, block: Any, row: Any, n: Any, values: Any) -> Any:
     return types.void(block, row, n, values), build
 
 
-rows_of: Any = intrinsic(prefer_literal=True)(_rows_of)
-into_rows: Any = intrinsic(prefer_literal=True)(_into_rows)
-
-
-def _into_line(typing: Any, out: Any, at: Any, values: Any) -> Any:
+@operation
+def into_line(typing: Any, out: Any, at: Any, values: Any) -> Any:
     """Compiled (out, at, values): the numbers of a tuple side by side in a flat array, from at on.
 
     As whole registers, as many as are full; as single numbers LLVM would move each by itself.
@@ -111,7 +108,8 @@ def _into_line(typing: Any, out: Any, at: Any, values: Any) -> Any:
     return types.void(out, types.int64, values), build
 
 
-def _turn_square(
+@operation
+def turn_square(
     typing: Any, source: Any, at: Any, step: Any, out: Any, goal: Any, further: Any
 ) -> Any:
     """Compiled (source, at, step, out, goal, further): a square of four by four numbers turned.
@@ -154,7 +152,8 @@ def _turn_square(
     return types.void(source, number, number, out, number, number), build
 
 
-def _stream_line(typing: Any, source: Any, begin: Any, out: Any, at: Any) -> Any:
+@operation
+def stream_line(typing: Any, source: Any, begin: Any, out: Any, at: Any) -> Any:
     """Compiled (source, begin, out, at): a whole line of the cache, eight numbers, past it.
 
     Where they go is a multiple of 64 bytes.
@@ -172,8 +171,3 @@ def _stream_line(typing: Any, source: Any, begin: Any, out: Any, at: Any) -> Any
         return context.get_dummy_value()
 
     return types.void(source, types.int64, out, types.int64), build
-
-
-into_line: Any = intrinsic(_into_line)
-turn_square: Any = intrinsic(_turn_square)
-stream_line: Any = intrinsic(_stream_line)

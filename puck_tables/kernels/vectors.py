@@ -5,12 +5,17 @@ In Python they stand in :mod:`puck_tables.kernels.as_written`.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+Written = Callable[[Callable[..., Any]], Any]
+operation: Written = intrinsic
+with_constants: Written = intrinsic(prefer_literal=True)  # arguments that are literals come so
 fuses = False  # whether what is compiled just now may round a·b + c once
 
 
@@ -18,7 +23,21 @@ def _rounding() -> tuple[str, ...]:
     return ("contract",) if fuses else ()
 
 
-def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any:
+def _everywhere(builder: Any, number: Any, lanes: Any) -> Any:
+    """A register of that kind with the number in all lanes."""
+    nothing, one = ir.Constant(lanes, ir.Undefined), ir.IntType(32)
+    spread = ir.Constant(ir.VectorType(one, lanes.count), [0] * lanes.count)
+    number = builder.insert_element(nothing, number, ir.Constant(one, 0))
+    return builder.shuffle_vector(number, nothing, spread)
+
+
+def _times_plus(builder: Any, one: Any, other: Any, more: Any) -> Any:
+    product = builder.fmul(one, other, flags=_rounding())
+    return builder.fadd(product, more, flags=_rounding()) if more else product
+
+
+@with_constants
+def weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any:
     """Compiled (c, k, (a, b, …), width) → the sums a·c[k+m] + b·c[k+width+m] + … as a tuple.
 
     Neighbouring rows, as many as weights, of ``width`` numbers (a constant) of a flat array of
@@ -28,9 +47,6 @@ def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any
     """
     count = width.literal_value
     double = ir.VectorType(ir.DoubleType(), count)
-    nothing = ir.Constant(double, ir.Undefined)
-    spread = ir.Constant(ir.VectorType(ir.IntType(32), count), [0] * count)
-    first = ir.Constant(ir.IntType(32), 0)
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         single = signature.args[0].dtype == types.float32
@@ -44,9 +60,7 @@ def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any
                 align=4 if single else 8,
             )
             values = builder.fpext(values, double) if single else values
-            weight = builder.extract_value(args[2], row)
-            weight = builder.insert_element(nothing, weight, first)
-            weight = builder.shuffle_vector(weight, nothing, spread)
+            weight = _everywhere(builder, builder.extract_value(args[2], row), double)
             product = builder.fmul(values, weight, flags=_rounding())
             total = product if row == 0 else builder.fadd(total, product, flags=_rounding())
         parts = [
@@ -56,9 +70,6 @@ def _weighted_rows(typing: Any, c: Any, k: Any, weights: Any, width: Any) -> Any
 
     sums: Any = types.UniTuple(types.float64, count)  # type: ignore[no-untyped-call]
     return sums(c, k, weights, width), build
-
-
-weighted_rows: Any = intrinsic(prefer_literal=True)(_weighted_rows)
 
 
 _LANES = 4  # functions side by side in one register
@@ -72,7 +83,8 @@ def _lanes_for(width: int) -> int:
     return 2 * _LANES if width % (2 * _LANES) == 0 else _LANES
 
 
-def _spline_polynomials(
+@with_constants
+def spline_polynomials(
     typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
 ) -> Any:
     """Compiled (c, k, (a, b, …), s, width, powers) → polynomials in s and their derivatives.
@@ -86,25 +98,13 @@ def _spline_polynomials(
     count, top = width.literal_value, powers.literal_value
     side = _lanes_for(count)
     lanes = ir.VectorType(ir.DoubleType(), side)
-    nothing, spread = ir.Constant(lanes, ir.Undefined), [0] * side
-    first = ir.Constant(ir.IntType(32), 0)
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         data = context.make_array(signature.args[0])(context, builder, args[0]).data
-
-        def everywhere(number: Any) -> Any:
-            number = builder.insert_element(nothing, number, first)
-            return builder.shuffle_vector(
-                number, nothing, ir.Constant(ir.VectorType(ir.IntType(32), side), spread)
-            )
-
-        def times_plus(one: Any, other: Any, more: Any) -> Any:
-            product = builder.fmul(one, other, flags=_rounding())
-            return builder.fadd(product, more, flags=_rounding())
-
+        everywhere, times_plus = partial(_everywhere, builder), partial(_times_plus, builder)
         rows = len(signature.args[2])
-        weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
-        variable = everywhere(args[3])
+        weight = [everywhere(builder.extract_value(args[2], row), lanes) for row in range(rows)]
+        variable = everywhere(args[3], lanes)
         values, slopes = [], []
         for part in range(0, count, side):
             value = slope = ir.Constant(lanes, [0.0] * side)
@@ -114,10 +114,7 @@ def _spline_polynomials(
                     at = ir.Constant(args[1].type, (row * top + power) * count + part)
                     pointer = builder.gep(data, [builder.add(args[1], at)])
                     result = builder.load(builder.bitcast(pointer, lanes.as_pointer()), align=8)
-                    if total is None:
-                        total = builder.fmul(result, weight[row], flags=_rounding())
-                    else:
-                        total = times_plus(result, weight[row], total)
+                    total = times_plus(result, weight[row], total)
                 if power == top - 1:
                     value = total
                 else:
@@ -133,30 +130,17 @@ def _spline_polynomials(
     return result(c, k, weights, s, width, powers), build
 
 
-spline_polynomials: Any = intrinsic(prefer_literal=True)(_spline_polynomials)
-
-
 def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any) -> Any:
     """Rows evaluated first, then weighted and added; with derivatives by s behind the values."""
     count, top = width.literal_value, powers.literal_value
     side = _lanes_for(count) if slopes else _LANES
     lanes = ir.VectorType(ir.DoubleType(), side)
-    nothing = ir.Constant(lanes, ir.Undefined)
-    spread = ir.Constant(ir.VectorType(ir.IntType(32), side), [0] * side)
-    first = ir.Constant(ir.IntType(32), 0)
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         single = signature.args[0].dtype == types.float32
         stored = ir.VectorType(ir.FloatType(), side) if single else lanes
         data = context.make_array(signature.args[0])(context, builder, args[0]).data
-
-        def everywhere(number: Any) -> Any:
-            number = builder.insert_element(nothing, number, first)
-            return builder.shuffle_vector(number, nothing, spread)
-
-        def times_plus(one: Any, other: Any, more: Any) -> Any:
-            product = builder.fmul(one, other, flags=_rounding())
-            return builder.fadd(product, more, flags=_rounding()) if more else product
+        everywhere, times_plus = partial(_everywhere, builder), partial(_times_plus, builder)
 
         def coefficients(place: int) -> Any:
             at = builder.add(args[1], ir.Constant(args[1].type, place))
@@ -165,8 +149,8 @@ def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, 
             return builder.fpext(values, lanes) if single else values
 
         rows = len(signature.args[2])
-        weight = [everywhere(builder.extract_value(args[2], row)) for row in range(rows)]
-        variable = everywhere(args[3])
+        weight = [everywhere(builder.extract_value(args[2], row), lanes) for row in range(rows)]
+        variable = everywhere(args[3], lanes)
         result: list[list[Any]] = [[], []]
         for part in range(0, count, side):
             totals = [None, None]
@@ -191,7 +175,8 @@ def _rows_first(slopes: bool, c: Any, k: Any, weights: Any, s: Any, width: Any, 
     return result(c, k, weights, s, width, powers), build
 
 
-def _spline_values(
+@with_constants
+def spline_values(
     typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
 ) -> Any:
     """Compiled (c, k, (a, b, …), s, width, powers) → polynomials in s, splined, as a tuple.
@@ -206,18 +191,16 @@ def _spline_values(
     return _rows_first(False, c, k, weights, s, width, powers)
 
 
-def _spline_slopes(
+@with_constants
+def spline_slopes(
     typing: Any, c: Any, k: Any, weights: Any, s: Any, width: Any, powers: Any
 ) -> Any:
     """Compiled like :func:`spline_values`, with derivatives by s behind the values."""
     return _rows_first(True, c, k, weights, s, width, powers)
 
 
-spline_values: Any = intrinsic(prefer_literal=True)(_spline_values)
-spline_slopes: Any = intrinsic(prefer_literal=True)(_spline_slopes)
-
-
-def _bits_of(typing: Any, number: Any) -> Any:
+@operation
+def bits_of(typing: Any, number: Any) -> Any:
     """Compiled float → the integer of the same bits."""
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -226,7 +209,8 @@ def _bits_of(typing: Any, number: Any) -> Any:
     return types.int64(types.float64), build
 
 
-def _number_of(typing: Any, bits: Any) -> Any:
+@operation
+def number_of(typing: Any, bits: Any) -> Any:
     """Compiled integer → the float of the same bits."""
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -235,7 +219,8 @@ def _number_of(typing: Any, bits: Any) -> Any:
     return types.float64(types.int64), build
 
 
-def _summed(typing: Any, total: Any, more: Any) -> Any:
+@operation
+def summed(typing: Any, total: Any, more: Any) -> Any:
     """Compiled a + b in a sum whose order does not matter: a loop over it may keep several."""
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -244,16 +229,11 @@ def _summed(typing: Any, total: Any, more: Any) -> Any:
     return types.float64(types.float64, types.float64), build
 
 
-def _patience(typing: Any, items: Any) -> Any:
+@operation
+def patience(typing: Any, items: Any) -> Any:
     """Compiled (items): nothing."""
 
     def build(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return context.get_dummy_value()
 
     return types.void(types.int64), build
-
-
-summed: Any = intrinsic(_summed)
-patience: Any = intrinsic(_patience)
-bits_of: Any = intrinsic(_bits_of)
-number_of: Any = intrinsic(_number_of)

@@ -59,13 +59,8 @@ class Answer(Result):
     def __call__(self, times: npt.ArrayLike) -> Answer:
         """The answer with its states at other times, s, ≥ 0, in any order.
 
-        Raises
-        ------
-        InputError
-            If one is later than a case that never stops is followed.
+        InputError if one is later than a case that never stops is followed.
 
-        Examples
-        --------
         >>> reference_case("slide")([0.5, 0.0]).vx.round(6).tolist()
         [0.019, 1.0]
         """
@@ -237,8 +232,7 @@ class Answer(Result):
             return columns[name]
         if name in ON_FLOOR:
             return self._on_floor()[name]
-        values: FloatArray = following(self, name)
-        return values
+        return following(self, name)
 
     def _on_floor(self) -> dict[str, FloatArray]:
         """Slip and forces, of every puck."""

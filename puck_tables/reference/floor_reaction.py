@@ -111,14 +111,8 @@ def wrench(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Force along the slip and to its left, N, and torque, N m, that a puck passes on.
 
-    Parameters
-    ----------
-    puck : Puck
-    phi : ndarray (n,), rad, in [−π/2, π/2]
-    slope : rad, of the floor
+    ``phi``: array (n,), rad, in [−π/2, π/2]; ``slope``: rad, of the floor.
 
-    Examples
-    --------
     >>> from puck_tables import Puck
     >>> _, _, torque = wrench(Puck(0.05, friction=0.2, mass=0.1, gravity=9.81), np.array([np.pi/2]))
     >>> (torque / (0.2 * 0.1 * 9.81 * 0.05)).round(12).tolist()          # 2/3 of f m g r

@@ -342,5 +342,4 @@ def turned(where: str, quaternions: FloatArray, up: int) -> FloatArray:
             f"degrees from row 1 to row {row + 1}, which no case does: their order must be w, "
             "x, y, z, or say it with columns (--columns), or another axis points up (--up)"
         )
-    angle: FloatArray = np.unwrap(2.0 * np.arctan2(vector[:, up], real))
-    return angle
+    return np.unwrap(2.0 * np.arctan2(vector[:, up], real))

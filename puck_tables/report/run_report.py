@@ -42,7 +42,9 @@ def report(run: Run) -> str:
     lines = _of_all(run) if several else _of_one(run)
     lines |= {"energy": _energy(run), "heat": _heat(run)}
     if run.scene.constraint is not None:
-        lines["reaction"] = _reaction(run)
+        last = run.last
+        force = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
+        lines["reaction"] = force + ("; at rest the floor shares it" if last["carried"] else "")
     steps = f", {run.steps} steps" if run.steps else ""
     lines |= {"error": _error(run), "model": run.model + steps}
     if any(event.what == "overhang" for event in run.events):
@@ -146,18 +148,14 @@ def _friction(scene: SceneSpec) -> str:
         if isinstance(one, Orthotropic) else f"{largest_of(one, 0.0) * normal:.6g}"
         for one in frictions_on(scene.floor, scene.puck.friction)
     )  # fmt: skip
-    decels = f"{_pull(scene)} = {decels} m/s^2"
+    pull = "f g cos(slope)" if scene.floor.slope else "f g"
+    decels = f"{pull} = {decels} m/s^2"
     if directions:
         return f"{by_direction}, {decels}"
     if scene.puck.shape is not None:
         return decels
     words = f"delta = {', '.join(f'{delta:.4g}' for delta in scene.heights)}, {decels}"
     return words + ("; part of the base may lift" if max(scene.heights) > 1.0 else "")
-
-
-def _pull(scene: SceneSpec) -> str:
-    """What friction takes of a mass on this floor."""
-    return "f g cos(slope)" if scene.floor.slope else "f g"
 
 
 def _event(event: Event) -> str:
@@ -272,13 +270,6 @@ def _heat(run: Run) -> str:
     rounding = run.energy_residual < _ROUNDING
     missed = f"under {_ROUNDING:g}" if rounding else f"{run.energy_residual:.1e}"
     return f"{note}; ledger misses {missed} of it"
-
-
-def _reaction(run: Run) -> str:
-    """With what force its constraint leads a puck at the end."""
-    last = run.last
-    words = f"({last['lambda_1']:.6g}, {last['lambda_2']:.6g}) N at the end"
-    return words + ("; at rest the floor shares it" if last["carried"] else "")
 
 
 def _error(run: Run) -> str:

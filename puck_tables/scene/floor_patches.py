@@ -192,8 +192,7 @@ def _within(places: FloatArray) -> FloatArray:
     """A point inside a polygon that runs counter-clockwise: in its lowest corner."""
     n = int(np.lexsort((places[:, 0], places[:, 1]))[0])
     corner, before, after = places[n], places[n - 1], places[(n + 1) % len(places)]
-    inside: FloatArray = corner + 1e-6 * ((before - corner) + (after - corner))
-    return inside
+    return corner + 1e-6 * ((before - corner) + (after - corner))
 
 
 def inside(places: FloatArray, point: FloatArray) -> bool:

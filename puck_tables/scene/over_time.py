@@ -208,8 +208,7 @@ def _just(table: FloatArray, t: float, after: bool) -> FloatArray:
     if one in (0, len(table)):
         return table[max(one - 1, 0), 1:]
     share = (t - times[one - 1]) / (times[one] - times[one - 1])
-    row: FloatArray = (1.0 - share) * table[one - 1, 1:] + share * table[one, 1:]
-    return row
+    return (1.0 - share) * table[one - 1, 1:] + share * table[one, 1:]
 
 
 @inlined

@@ -125,14 +125,10 @@ class Run(TimedResult):
     picture: ClassVar[str] = "run"
 
     def __call__(self, times: npt.ArrayLike) -> Run:
-        """The run with its states at other times, s, ascending.
+        """The run with its states at other times, s, ascending, else InputError.
 
-        Times after its end are left out, unless all rests there.
-
-        Raises
-        ------
-        InputError
-            If they are no such times, or a file that the scene names has changed since the run.
+        Times after its end are left out, unless all rests there.  InputError, too, if a file that
+        the scene names has changed since the run.
         """
         refuse_changed(self.scene, self.files)
         return self.simulated(self.scene, times)
@@ -156,13 +152,7 @@ class Run(TimedResult):
         return column_of(self, name)
 
     def __getitem__(self, puck: int | str) -> dict[str, FloatArray]:
-        """The columns of one puck, by its name or number, arrays (n,).
-
-        Raises
-        ------
-        InputError
-            If there is no such puck.
-        """
+        """The columns of one puck, by its name or number, arrays (n,); InputError without it."""
         if isinstance(puck, str) and puck in COLUMNS and puck not in self.names:
             raise InputError(f"[{puck!r}] takes a puck: the column of all of them is .{puck}")
         number = number_of(puck, self.names)
@@ -335,5 +325,4 @@ def column_of(result: Any, name: str) -> FloatArray:
     Raises AttributeError.
     """
     columns: Mapping[str, FloatArray] = result.__dict__.get("columns", {})
-    column: FloatArray = columns[name] if name in columns else following(result, name)
-    return column
+    return columns[name] if name in columns else following(result, name)

@@ -164,15 +164,8 @@ class SceneSpec(KeepsDefaults):
     def from_tables(cls, tables: Mapping[str, Any], source: str = "scene") -> Self:
         """A scene from nested tables, as a TOML file gives them; walls stand under ``wall``.
 
-        ``source``: its name, for messages.
+        ``source``: its name, for messages.  InputError as for the class.
 
-        Raises
-        ------
-        InputError
-            As for the class.
-
-        Examples
-        --------
         >>> SceneSpec.from_tables({"puck": {"radius": 0.04, "height": "0:0.01:2"}}).ranges
         {'puck.height': array([0.  , 0.01])}
         """
@@ -223,12 +216,7 @@ class SceneSpec(KeepsDefaults):
         return [2.0 * friction * puck.height / puck.radius for friction in self.frictions]
 
     def single(self) -> Self:
-        """Itself, if no number of it is a range.
-
-        Raises
-        ------
-        InputError
-        """
+        """Itself, if no number of it is a range, else InputError."""
         if self.ranges:
             raise InputError(
                 f"{', '.join(self.ranges)}: a range makes many runs; give one number, or run a "
@@ -253,15 +241,8 @@ class SceneSpec(KeepsDefaults):
         return scene
 
     def at(self, numbers: Mapping[str, Any]) -> Self:
-        """The scene without ranges, with other numbers, by path.
+        """The scene without ranges, with other numbers, by path; InputError if they do not fit it.
 
-        Raises
-        ------
-        InputError
-            If they do not fit it.
-
-        Examples
-        --------
         >>> SceneSpec(PuckSpec(0.04)).at({"launch.spin": 5.0}).launch.spin
         5.0
         """

@@ -32,28 +32,13 @@ def _forces(engine: Engine, states: FloatArray, out: FloatArray) -> None:
 
 
 def friction_at(scene: SceneSpec, states: FloatArray) -> FloatArray:
-    """Force and torque of the floor on the one puck of a scene.
+    """Force along x and y, N, and torque, N m, of the floor on the one puck of a scene, (n, 3).
 
-    A base over several frictions feels each under its own part, wherever it lies; where friction
-    changes over time it is that at its start.
+    −∫ f σ e dA and its moment, e the direction of the slip; 0 without a slip.  A base over several
+    frictions feels each under its own part, wherever it lies; where friction changes over time it
+    is that at its start.  ``states``: (n, 6): x, y m, angle rad; velocity m/s and spin rad/s over
+    the floor; in the laboratory where strips and patches have velocities of their own.
 
-    Parameters
-    ----------
-    scene : of one puck
-    states : ndarray (n, 6): x, y m, angle rad; velocity m/s and spin rad/s over the floor; in the
-        laboratory where strips and patches have velocities of their own
-
-    Returns
-    -------
-    ndarray (n, 3)
-        Force along x and y, N, and torque, N m; 0 without a slip.
-
-    Notes
-    -----
-    −∫ f σ e dA and its moment, e the direction of the slip.
-
-    Examples
-    --------
     >>> from puck_tables import Floor, Puck, Scene, Strips
     >>> halves = Floor(strips=Strips((0.0,), (0.78, 0.67)))
     >>> spins = np.array([[0.0, 0.0, 0.0, 0.0, 0.0, 20.0]])

@@ -57,8 +57,7 @@ class Playing:
 
     def state(self) -> FloatArray:
         """X, y (m), angle (rad), vx, vy (m/s), spin (rad/s) of every puck now, array (pucks, 6)."""
-        state: FloatArray = self._all_now()[self._place]
-        return state
+        return self._all_now()[self._place]
 
     def _all_now(self) -> FloatArray:
         """States of every puck now, (pucks, 6), in the order of the engine."""
@@ -106,8 +105,7 @@ class Playing:
         request = self._engine, until, first, self._room
         if self._entry[0] is not self._engine or self._entry[1] is None:
             self._entry = self._engine, entry_of(advance, *request)
-        how: int = (self._entry[1] or advance)(*request)
-        return how
+        return (self._entry[1] or advance)(*request)
 
     def _push_on(self) -> None:
         """Send the groups that push now on their way."""

@@ -121,13 +121,7 @@ class Running(Playing):
         return ends[self._place]
 
     def at(self, time: float) -> FloatArray:
-        """States (pucks, 6) at any time: as they were, or will be if nobody interferes.
-
-        Raises
-        ------
-        InputError
-            If the time is no number ≥ 0.
-        """
+        """States (pucks, 6) at any time ≥ 0: as they were, or will be if nobody interferes."""
         moment = real("time", time, "s")
         if not moment >= 0.0:
             raise InputError(f"time must not be negative, got {moment:g} s")
@@ -147,22 +141,14 @@ class Running(Playing):
         return self._states(moments)
 
     def _states(self, times: FloatArray) -> FloatArray:
-        states: FloatArray = states_at(self._engine, times)[:, self._place]
-        return states
+        return states_at(self._engine, times)[:, self._place]
 
     def advance(self, duration: float) -> list[Event]:
         """Let time pass; what happened in it.
 
-        Parameters
-        ----------
-        duration : s, ≥ 0; inf: until nothing more can happen
-
-        Raises
-        ------
-        InputError
-            If it is no such number, or inf where pucks never come to rest.
-        PuckError
-            If events crowd together without end.
+        ``duration``: s, ≥ 0; inf: until nothing more can happen.  InputError if it is no such
+        number, or inf where pucks never come to rest; PuckError if events crowd together without
+        end.
         """
         span = span_of(duration)
         before, until = int(self._engine.counts[g.N_EVENTS]), self.time + span
@@ -187,12 +173,7 @@ class Running(Playing):
         """Let time pass until nothing more can happen; since when that is so, s.
 
         And whether a floor that turns goes on to carry pucks over the same borders, turn after
-        turn: one whole turn is followed.
-
-        Raises
-        ------
-        InputError, PuckError
-            As :meth:`advance`.
+        turn: one whole turn is followed.  Errors as of :meth:`advance`.
         """
         refuse_endless(self.scene)
         with self._or_as_before():
@@ -281,15 +262,8 @@ class Running(Playing):
         The impulses of impacts, and the forces, over their time, of pucks that it pushes.  NaN
         where several driven ones pushed the same pucks, for nobody knows how these share it.  What
         rims without a bound on their friction give as they grip at once is left out where a cushion
-        takes part.
+        takes part.  InputError if there is no such puck, or it is not driven.
 
-        Raises
-        ------
-        InputError
-            If there is no such puck, or it is not driven.
-
-        Examples
-        --------
         >>> from puck_tables import Puck, Scene
         >>> mallet = Puck(0.05, path=[[0, -0.2, 0]], name="mallet")
         >>> world = Scene(pucks=[mallet, Puck(0.03, mass=0.1, friction=0.1)]).world()

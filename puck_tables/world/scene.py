@@ -175,8 +175,7 @@ class Scene(SceneSpec):
         from puck_tables.bulk.finish import Doing
         from puck_tables.world.runs import sweep
 
-        ends: Map = sweep(self, Doing(threads, chunk, progress, store, cluster, overwrite))
-        return ends
+        return sweep(self, Doing(threads, chunk, progress, store, cluster, overwrite))
 
     def sample(
         self,
@@ -230,8 +229,7 @@ class Scene(SceneSpec):
         from puck_tables.world.runs import sample
 
         how = Doing(threads, chunk, progress, store, cluster, overwrite)
-        result: Sample = sample(self, count, seed, spreads, how)
-        return result
+        return sample(self, count, seed, spreads, how)
 
     def world(self) -> World:
         """The scene as a board to play on: advance it, strike pucks, look ahead.

@@ -47,13 +47,7 @@ class SceneEnds(Result):
         return column_of(self, name)
 
     def __getitem__(self, puck: int | str) -> dict[str, FloatArray]:
-        """The columns of one puck, by its name or number.
-
-        Raises
-        ------
-        InputError
-            If there is no such puck.
-        """
+        """The columns of one puck, by its name or number; InputError if there is none."""
         number = number_of(puck, self.names or (self.whose or "puck",))
         return {
             name: values[..., number] if values.ndim > self.end.ndim else values
@@ -61,13 +55,7 @@ class SceneEnds(Result):
         }
 
     def of(self, puck: int | str) -> Any:
-        """The ends of one puck alone, by its name or number.
-
-        Raises
-        ------
-        InputError
-            If there is no such puck.
-        """
+        """The ends of one puck alone, by its name or number; InputError if there is none."""
         own = self[puck]
         whose = self.names[number_of(puck, self.names)] if self.names else self.whose
         return replace(self, names=(), columns=own, whose=whose)
