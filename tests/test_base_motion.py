@@ -321,20 +321,10 @@ def random_slide(seed: int) -> tuple[Puck, np.ndarray, float]:
     return puck, velocity, rng.choice([-1.0, 1.0]) * q * math.sin(phi) / gyration
 
 
-def judge_of(puck: Puck) -> Judge:
-    """The judge of a puck."""
-    base = puck.shape
-    assert base is not None
-    middle = np.array(base.middle)
-    polygons = [np.array(outline) - middle for outline in base.outlines]
-    discs = [(x - middle[0], y - middle[1], r, sign) for x, y, r, sign in base.discs]
-    return Judge(polygons, discs, 0.5 * puck.friction * puck.height, puck.gyration)
-
-
 @pytest.mark.parametrize("seed", range(10))
 def test_friction_is_that_of_the_judge(seed: int):
     puck, _, _ = random_slide(seed)
-    judge, base = judge_of(puck), packed(puck.shape, puck.lever)
+    judge, base = Judge.of_puck(puck), packed(puck.shape, puck.lever)
     rng = np.random.default_rng(seed)
     for _ in range(40):
         w = rng.normal()
@@ -347,7 +337,7 @@ def test_friction_is_that_of_the_judge(seed: int):
 
 def keeps_its_tolerance(seed: int) -> None:
     puck, velocity, spin = random_slide(seed)
-    truth = judge_of(puck).slide(velocity, spin, puck.decel)
+    truth = Judge.of_puck(puck).slide(velocity, spin, puck.decel)
     q0 = math.hypot(*velocity, puck.gyration * spin)
     time, length = q0 / puck.decel, q0 * q0 / puck.decel
     assert puck.shape is not None

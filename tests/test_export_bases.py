@@ -35,13 +35,6 @@ SLID = ("tall box",)  # by every run
 LAUNCHES = np.array([[1.0, 0.3, 2.0], [0.2, -0.4, -25.0], [0.0, 0.0, 3.0], [0.5, 0.0, 0.0]])
 
 
-def judge_of(puck: pt.Puck) -> Judge:
-    outlines = [np.array(one) - puck.shape.middle for one in puck.shape.outlines]
-    middle, lever = puck.shape.middle, 0.5 * puck.friction * puck.height
-    discs = [(x - middle[0], y - middle[1], r, sign) for x, y, r, sign in puck.shape.discs]
-    return Judge(outlines, discs, lever, puck.gyration)
-
-
 def runner(language: str, puck: pt.Puck, folder: Path, steps: int = 100_000) -> Run:
     make, program = RUNNERS[language]
     if shutil.which(program) is None:
@@ -54,7 +47,7 @@ def runner(language: str, puck: pt.Puck, folder: Path, steps: int = 100_000) -> 
 @cache
 def frictions(name: str) -> tuple[np.ndarray, np.ndarray]:
     """Slips and angles of the body (n, 4), force and torque (n, 3), as the judge has it."""
-    rng, judge, count = np.random.default_rng(8), judge_of(PUCKS[name]), 150
+    rng, judge, count = np.random.default_rng(8), Judge.of_puck(PUCKS[name]), 150
     edge = judge.polygons[0] if judge.polygons else np.eye(2) * judge.reach
     slips = rng.normal(size=(count, 3)) * [1.0, 1.0, 1.0 / judge.reach]
     slips[:, 2] *= 10.0 ** rng.uniform(-4.0, 3.0, count)
@@ -85,14 +78,14 @@ def test_friction_is_that_of_the_judge(name: str, language: str, tmp_path: Path)
     found, codes = runner(language, PUCKS[name], tmp_path)("wrench", rows)
     assert not codes.any()
     np.testing.assert_allclose(found[:, :2], wanted[:, :2], atol=2e-13)
-    torque, reach = wanted[:, 2], judge_of(PUCKS[name]).reach
+    torque, reach = wanted[:, 2], Judge.of_puck(PUCKS[name]).reach
     np.testing.assert_allclose(found[:, 2], torque, rtol=0.0, atol=4e-13 * reach)
 
 
 @cache
 def slides(name: str) -> np.ndarray:
     """When and where launches of a puck end, as the judge has it."""
-    judge = judge_of(PUCKS[name])
+    judge = Judge.of_puck(PUCKS[name])
     return np.array([judge.slide((vx, vy), w, 2.0, 1e-10) for vx, vy, w in LAUNCHES.tolist()])
 
 

@@ -43,11 +43,6 @@ def scores(seed: int, count: int):
     return np.array(rows)
 
 
-def test_friction_of_slides_along_a_line():
-    rows = scores(1, 12)
-    assert (np.abs(rows[:, :2]) < 4.5).all() and rows[:, 2].mean() > 0.8
-
-
 @pytest.mark.thorough
 def test_few_frames_do_not_widen_an_error_by_chance():
     rng, wide = np.random.default_rng(3), []

@@ -108,21 +108,24 @@ def test_ring_by_definition(phi):
 
 
 @pytest.mark.parametrize("phi", [0.3, 0.86, 1.3])
-@pytest.mark.parametrize("inner", [0.5, 0.8])
-def test_washer_is_a_pile_of_rings(phi, inner):
-    got = law_of(f"annulus:{inner}").integrals(phi)
+@pytest.mark.parametrize("name", ["uniform", "galin", "hertz", "annulus:0.5", "annulus:0.8"])
+def test_every_law_is_a_pile_of_rings(name, phi):
+    """Of radius sin q, with 2 W(ρ) ρ dρ as a function of q."""
+    got, inner = law_of(name).integrals(phi), float(name.partition(":")[2] or 0.0)
     centre = 1.0 / math.tan(phi)
-    cuts = sorted({inner, 1.0, *([centre] if inner < centre < 1.0 else [])})
-    node, weight = np.polynomial.legendre.leggauss(24)
+    radii = [inner, *([centre] if inner < centre < 1.0 else []), 1.0]
+    node, weight = np.polynomial.legendre.leggauss(32)
     total = np.zeros(5)
-    for low, high in pairwise(cuts):
+    for low, high in pairwise(np.arcsin(radii)):
         # graded to both ends, where the centre of rotation may lie on the ring
         u = 0.5 * (1 + node)
-        radius = low + (high - low) * u**3 * (10 - 15 * u + 6 * u * u)
+        q = low + (high - low) * u**3 * (10 - 15 * u + 6 * u * u)
         element = (high - low) * 30 * u**2 * (1 - u) ** 2 * 0.5 * weight
-        for r, w in zip(radius, element, strict=True):
-            total += 2 * r * w * np.array(by_definition(phi, r))
-    np.testing.assert_allclose(np.array(got), total / (1 - inner**2), rtol=0.0, atol=1e-8)
+        s, c = np.sin(q), np.cos(q)
+        load = {"galin": s, "hertz": 3 * s * c * c}.get(name, 2 * s * c / (1 - inner**2))
+        for r, w in zip(s, load * element, strict=True):
+            total += w * np.array(by_definition(phi, r))
+    np.testing.assert_allclose(np.array(got), total, rtol=0.0, atol=1e-9)
 
 
 def test_thin_washers_tend_to_the_ring():

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.integrate import dblquad
 
 from puck_tables.contact import quadrature
 from puck_tables.contact.pressure import UNIFORM, PressureLaw
@@ -53,37 +51,6 @@ def test_laws_at_pure_translation_and_pure_spin(law, mean_x2, mean_radius):
     spin = quadrature.integrals(HALF, law)
     expected = (mean_radius / 2, -mean_radius / 2, mean_radius, 0.0)
     np.testing.assert_allclose(np.array(spin)[1:], expected, rtol=0.0, atol=1e-10)
-
-
-@pytest.mark.thorough
-@LAWS
-@pytest.mark.parametrize("phi", [0.6, 1.1])  # centre of rotation outside and inside the disc
-def test_laws_against_the_definition(law, phi):
-    """The defining double integrals, ρ = sin u, by scipy's adaptive quadrature."""
-    alpha, beta = math.cos(phi), math.sin(phi)
-    p = quadrature.integrals(phi, law)
-    corner = [0.0, HALF] if alpha > beta else [0.0, math.asin(alpha / beta), HALF]
-
-    def by_definition(numerator):
-        def integrand(theta, u):
-            rho, sine = math.sin(u), math.sin(theta)
-            w = math.hypot(beta * rho - alpha * sine, alpha * math.cos(theta))
-            return numerator(rho, sine) / w * float(law.weight(rho)) * rho * math.cos(u)
-
-        pieces = [
-            dblquad(integrand, lower, upper, -HALF, HALF, epsabs=1e-11, epsrel=1e-11)[0]
-            for lower, upper in pairwise(corner)
-        ]
-        return 2.0 * sum(pieces) / math.pi  # both halves of the disc
-
-    truth = (
-        by_definition(lambda rho, sine: alpha - beta * rho * sine) / alpha,
-        by_definition(lambda rho, sine: rho**2 * (1.0 - sine**2)),
-        by_definition(lambda rho, sine: (alpha - beta * rho * sine) * rho * sine) / beta,
-        by_definition(lambda rho, sine: (beta * rho - alpha * sine) * rho) / beta,
-        by_definition(lambda rho, sine: (beta * rho - alpha * sine) * rho**2 * sine) / alpha,
-    )
-    np.testing.assert_allclose(np.array(p), truth, rtol=0.0, atol=1e-9)
 
 
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")

@@ -320,13 +320,7 @@ def test_validation_of_a_bent_curve_fails_there_alone(rough: StopTable):
     assert failed <= {"curve", "turn"}
 
 
-def test_sizes_and_accuracies_out_of_range():
-    with pytest.raises(InputError, match="cells must be from 8"):
-        SlipAxis(7)
-    with pytest.raises(InputError, match="both fix the grid"):
-        Table.build("stops", 1e-5, cells=32)
-    with pytest.raises(AccuracyError, match="1e-11"):
-        Table.build("stops", 1e-13)
+def test_accuracies_out_of_range():
     with pytest.raises(AccuracyError, match="--kind stops"):
         stop((1, 0), 1.0, tol=1e-11, table=Table.shipped("stops"))
     with pytest.raises(AccuracyError, match="closed forms reaches 1e-13"):

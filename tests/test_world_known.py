@@ -75,16 +75,6 @@ def test_a_wall_is_the_mirror_image_of_a_puck():
         assert both[0][name] == pytest.approx(alone[0][name], abs=1e-12), name
 
 
-def test_a_wall_does_what_it_does_to_one_puck_alone():
-    wall = pt.Wall((0.3, 0.0), normal=(-1.0, 0.2), restitution=0.6, tangential=-0.3, friction=0.25)
-    many = pt.Scene(pucks=[puck_at(0, 0, (1.0, 0.3), 20.0, friction=0.1)], walls=[wall]).simulate()
-    puck = pt.Puck(0.03, 0.01, 0.1, 0.1)
-    one = pt.Scene(puck, launch=pt.Launch((1.0, 0.3), 20.0), walls=[wall]).simulate()
-    assert many.end_time == pytest.approx(one.end_time, abs=1e-9)
-    assert many.last["x"][0] == pytest.approx(one.last["x"], abs=1e-9)
-    assert many.last["y"][0] == pytest.approx(one.last["y"], abs=1e-9)
-
-
 @pytest.mark.parametrize("count", [3, 5, 9])
 def test_a_row_passes_an_impact_on(count: int):
     row = [puck_at(0.2 + 0.06 * n, 0.0) for n in range(count)]
@@ -120,18 +110,11 @@ def test_a_symmetric_break_stays_symmetric():
 def test_the_numbering_of_pucks_and_walls_changes_no_bit(seed: int):
     scene = draw(seed, 8)
     turn = np.random.default_rng(seed).permutation(8)
-    other = pt.Scene(pucks=[scene.pucks[n] for n in turn], walls=scene.walls)
+    other = pt.Scene(pucks=[scene.pucks[n] for n in turn], walls=scene.walls[::-1])
     one, two = scene.simulate(), other.simulate()
     assert one.end_time == two.end_time
     assert np.array_equal(one.x[:, turn], two.x)
     assert np.array_equal(one.spin[:, turn], two.spin)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_walls_in_another_order_change_nothing(seed: int):
-    scene = draw(seed, 6)
-    other = pt.Scene(pucks=scene.pucks, walls=scene.walls[::-1])
-    assert np.array_equal(scene.simulate().x, other.simulate().x)
 
 
 @pytest.mark.parametrize("scale", [0.5, 2.0, 8.0])

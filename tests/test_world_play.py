@@ -46,18 +46,6 @@ def test_a_heavy_puck_pushes_a_light_one_that_brakes_more():
     assert run.last["x"][0] == pytest.approx(0.8**2 / (2 * decel), abs=1e-9)
 
 
-def test_a_slope_with_drag_is_that_of_one_puck():
-    floor, drag = pt.Floor(slope=0.2, downhill=1.0), pt.Drag(0.05, 0.01, 1e-5)
-    launch = pt.Launch((1.0, 0.3), 30.0)
-    puck = {"radius": 0.04, "height": 0.02, "friction": 0.15, "mass": 0.2}
-    one = pt.Scene(pt.Puck(**puck), floor, launch, drag=drag, time=1.0).simulate()
-    many = pt.Scene(
-        pucks=[pt.Puck(**puck, launch=launch)], floor=floor, drag=drag, time=1.0
-    ).simulate()
-    for name in ("x", "y", "vx", "vy", "spin", "orientation"):
-        assert many.last[name][0] == pytest.approx(one.last[name], abs=5e-9), name
-
-
 def test_a_curling_ring_is_integrated():
     ring: dict[str, Any] = {"radius": 0.145, "height": 0.02, "friction": 0.01,
                             "pressure": "annulus:0.8", "gyration": 0.7}  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from puck_tables.bulk.store import Store
 
 _COPIES = 3  # of the columns: as read, in their shape, and what follows from them
 
@@ -124,27 +122,22 @@ def finish(work: Work, how: Doing) -> Any:
         raise OutputError(f"cannot write {store}: {error}") from None
     from puck_tables.bulk.store import Store, by_threads
 
-    if cluster is None:
-        tell = work.prepared(threads, how.progress)
-        kept = Store(store, work, begin=True, overwrite=how.overwrite)
-        tally = _accepted(kept, work, lambda: by_threads(kept, threads, tell))
-    else:
+    workers: Any = nullcontext()
+    if cluster is not None:
         from puck_tables.bulk.cluster import by_cluster, client_of
 
-        with client_of(cluster) as client:
-            tell = work.prepared(threads, how.progress)
-            kept = Store(store, work, begin=True, overwrite=how.overwrite)
-            tally = _accepted(kept, work, lambda: by_cluster(client, kept, tell))
+        workers = client_of(cluster)
+    with workers as client:
+        tell = work.prepared(threads, how.progress)
+        kept = Store(store, work, begin=True, overwrite=how.overwrite)
+        try:
+            if client is None:
+                tally = by_threads(kept, threads, tell)
+            else:
+                tally = by_cluster(client, kept, tell)
+            work.checked(tally)
+        except InputError:  # the work is refused: a store that is there stays
+            kept.place.withdraw()
+            raise
+        kept.place.complete()
     return Stored(kept.path, work, tally)
-
-
-def _accepted(kept: Store, work: Work, done: Callable[[], Tally]) -> Tally:
-    """Do a work; its store takes the place of another only if the work is not refused."""
-    try:
-        tally = done()
-        work.checked(tally)
-    except InputError:
-        kept.place.withdraw()
-        raise
-    kept.place.complete()
-    return tally

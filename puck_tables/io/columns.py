@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from puck_tables._core.arrays import FloatArray
 from puck_tables._core.safe_write import as_utf8
 from puck_tables._core.wording import meant
 
@@ -354,7 +355,7 @@ def derived(columns: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def following(result: Any, name: str) -> Any:
+def following(result: Any, name: str) -> FloatArray:
     """A column as an attribute of a result that has those from which it follows.
 
     Raises AttributeError if it follows from none.
@@ -363,7 +364,8 @@ def following(result: Any, name: str) -> Any:
     try:
         if column is None or column.by is None:
             raise AttributeError
-        return column.by(*(getattr(result, one) for one in column.of))
+        values: FloatArray = column.by(*(getattr(result, one) for one in column.of))
+        return values
     except AttributeError:
         near = meant(name, result.__dict__.get("columns", ()))
         raise AttributeError(f"{type(result).__name__} has no {name}{near}") from None

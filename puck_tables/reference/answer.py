@@ -232,8 +232,7 @@ class Answer(Result):
             return columns[name]
         if name in ON_FLOOR:
             return self._on_floor()[name]
-        values: FloatArray = following(self, name)
-        return values
+        return following(self, name)
 
     def _on_floor(self) -> dict[str, FloatArray]:
         """Slip and forces, of every puck."""

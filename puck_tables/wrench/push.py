@@ -99,8 +99,7 @@ class Push(Result):
 
     def __getattr__(self, name: str) -> FloatArray:
         """A column that follows from others: ``speed`` (n,) m/s."""
-        column: FloatArray = following(self, name)
-        return column
+        return following(self, name)
 
     @property
     def contact(self) -> list[str]:

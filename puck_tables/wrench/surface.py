@@ -72,8 +72,7 @@ class LimitSurface(Result):
 
     def __getattr__(self, name: str) -> FloatArray:
         """A column that follows from others: ``force``, N."""
-        column: FloatArray = following(self, name)
-        return column
+        return following(self, name)
 
     def __repr__(self) -> str:
         return f"LimitSurface({self.torque.size} twists, {_named(self.puck)}, {self._largest})"

@@ -34,6 +34,14 @@ class Judge:
         ones = self._one_x_y(self.points)
         self.moments = np.einsum("ni,nj,n->ij", ones, ones, self.weights)  # (1, x, y) twice
 
+    @classmethod
+    def of_puck(cls, puck: Any) -> Judge:
+        """The judge of a puck that stands on a base."""
+        base, middle = puck.shape, np.array(puck.shape.middle)
+        discs = [(x - middle[0], y - middle[1], r, sign) for x, y, r, sign in base.discs]
+        lever = 0.5 * puck.friction * puck.height
+        return cls([np.array(one) - middle for one in base.outlines], discs, lever, puck.gyration)
+
     @staticmethod
     def _one_x_y(points: np.ndarray) -> np.ndarray:
         return np.column_stack([np.ones(len(points)), points])
