@@ -205,8 +205,14 @@ def test_stamps_too_coarse_for_their_frames_ask_for_their_rate(tmp_path: Path):
     (track,) = read(tmp_path, text, unit="m", fps=240.0)
     assert_allclose(track.time, times, rtol=1e-12)
     assert "its own times are not used" in track.notes[-1]
-    with pytest.raises(InputError, match="not those of 230 frames a second"):
+    with pytest.raises(InputError, match="not those of 230 frames a second.* film .* slowly"):
         read(tmp_path, text, unit="m", fps=230.0)
+
+
+def test_one_stamp_behind_a_second_tells_no_digits(tmp_path: Path):
+    times = np.round(np.linspace(0.0, 1.1, 12) + 0.012 * np.sin(np.arange(12)), 2)
+    times[-1] = 1.1  # two digits, as all before it have behind the point
+    assert_allclose(stamped(tmp_path, times, 2), times, rtol=1e-12)
 
 
 def test_stamps_that_are_not_even_are_kept(tmp_path: Path):

@@ -17,6 +17,7 @@ _STAMPED = 1e3  # lengths of a film: a first time that is later is that of a clo
 _EPOCH = (5e8, 4e9)  # s since 1970: 1985 to 2096
 _SLOW = 1.0  # s between frames: more, and times are hardly in seconds
 _FEWEST_STAMPS, _MOST_DIGITS = 6, 12  # of which is told that they round even frames; of each
+_TELLING = 3  # of the farthest stamps, where nearer ones have more digits behind the point
 _WHOLE = 1e-3  # of a unit: so near to whole ones clocks of years are
 _FINE, _LOOSE = 1e-3, 1.1  # of a frame: rounding that nobody sees; of the unit: slope of the line
 _SKIPS = 1.75  # of a usual step: more, and a frame was left out
@@ -42,7 +43,8 @@ def times_of(
         if not np.ptp(body.time - even) <= _LOOSE * _unit_of(np.unique(body.time)):
             raise InputError(
                 f"{path} has times, and they are not those of {how.fps:.9g} frames a second, one a "
-                "row: leave fps (--fps) out"
+                "row: leave fps (--fps) out; or leave the times out where they are wrong, as of a "
+                "film that is played slowly (--columns with - for them)"
             )
         return even, [f"{words}; its own times are not used"]
     if body.time is None:
@@ -76,7 +78,7 @@ def times_of(
 def _unit_of(stamps: FloatArray) -> float:
     """The power of ten that all of some ascending stamps are whole multiples of, to so many digits.
 
-    >>> [round(_unit_of(np.array(s)), 9) for s in ([0.0, 0.033, 0.133], [0.3333, 1.667])]
+    >>> [round(_unit_of(np.array(s)), 9) for s in ([0.0, 0.033, 0.133], [0.3333, 1.1, 1.2, 1.667])]
     [0.001, 0.001]
     """
 
@@ -86,8 +88,9 @@ def _unit_of(stamps: FloatArray) -> float:
     size = np.abs(stamps)
     size[size == 0.0] = size.max() or 1.0
     units = (10.0 ** (np.floor(np.log10(size)) - digits) for digits in range(_MOST_DIGITS))
-    whole = (float(one.max()) for one in units if are_whole(one.max()) or are_whole(one))
-    return next(whole, 0.0)
+    tell = (float(one.max()) for one in units if are_whole(one.max())
+            or (are_whole(one) and np.count_nonzero(one == one.max()) >= _TELLING))  # fmt: skip
+    return next(tell, 0.0)
 
 
 def of_even_frames(

@@ -59,8 +59,8 @@ def doubts(
     if not said and height is not None and height.value > _TALL * true and height.low > true:
         said.append(
             f"A height of {height.value:.3g} m is {height.value / true:.3g} times the radius, as "
-            "no puck is: the path bends for another reason, or the floor slopes; give the height "
-            "if it is known"
+            f"no puck is: the path bends for another reason, or the floor slopes; or {_UNITS}; give "
+            "the height if it is known"
         )
     if own is not None and not 1.0 / _OTHER < own.value / radius < _OTHER:
         said.append(
