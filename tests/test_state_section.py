@@ -55,6 +55,33 @@ def test_states_by_truth_friction(kind: tuple[str, float, float], every: int):
     assert {name: off for name, row in apart.items() if (off := np.abs(row).max()) > 1e-9} == {}
 
 
+@pytest.mark.parametrize("kind", [
+    USUAL[0], *(pytest.param(one, marks=pytest.mark.thorough) for one in USUAL[1:] + MORE),
+])  # fmt: skip
+def test_a_state_launched_anew_goes_on_as_it_would_have(kind: tuple[str, float, float]):
+    """At all moments, from 1e-14 of the way on to as near to the stop."""
+    law, delta, gyration = kind
+    rng, n = np.random.default_rng(7), 20_000
+    puck = Puck.similar(delta=delta, pressure=law, gyration=gyration)
+    limit = math.log(puck.limit_ratio) if 0.0 < puck.limit_ratio < math.inf else 0.0
+    u = rng.uniform(-8.0, 8.0, n)
+    u[::3] = limit + rng.choice([-1.0, 1.0], u[::3].size) * 10.0 ** -rng.uniform(0, 14, u[::3].size)
+    phi, heading = np.arctan(np.exp(u)), rng.uniform(-3.0, 3.0, n)
+    velocity = np.cos(phi)[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
+    spin, share = np.sin(phi) * rng.choice([-1.0, 1.0], n), rng.random(n)
+    share[::5] = 10.0 ** -rng.uniform(1.0, 14.0, share[::5].size)
+    share[1::5] = 1.0 - 10.0 ** -rng.uniform(1.0, 14.0, share[1::5].size)
+    end = share * puck.stop(velocity, spin, tol=1e-8).stop_time
+    middle = end * rng.random(n)
+    whole, first = puck.states(velocity, spin, end), puck.states(velocity, spin, middle)
+    then = puck.states(np.stack([first.vx, first.vy], axis=1), first.spin, end - middle)
+    for name in ("x", "y", "orientation"):
+        both = getattr(first, name) + getattr(then, name)
+        assert np.abs(both - getattr(whole, name)).max() < 1e-9
+    for name in ("vx", "vy", "spin"):
+        assert np.abs(getattr(then, name) - getattr(whole, name)).max() < 1e-9
+
+
 def test_launches_that_neither_slide_nor_spin_and_all_sizes():
     puck = Puck.similar(delta=0.8, pressure="hertz", gyration=0.6)
     speed = [0.0, 1.0, 0.0, 1.0, 1.0, 3e-140, 5e-324, 1e100, 1e-300, 1.0, 1.0]

@@ -205,7 +205,7 @@ def test_stamps_too_coarse_for_their_frames_ask_for_their_rate(tmp_path: Path):
     (track,) = read(tmp_path, text, unit="m", fps=240.0)
     assert_allclose(track.time, times, rtol=1e-12)
     assert "its own times are not used" in track.notes[-1]
-    with pytest.raises(InputError, match="not those of 230 frames a second.* film .* slowly"):
+    with pytest.raises(InputError, match=r"not those of 230 frames a second.* film .* slowly"):
         read(tmp_path, text, unit="m", fps=230.0)
 
 

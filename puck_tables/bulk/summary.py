@@ -99,7 +99,7 @@ class Summary:
     def quantiles(
         self, shares: npt.ArrayLike = (0.025, 0.25, 0.5, 0.75, 0.975)
     ) -> dict[str, FloatArray]:
-        """Values below which these shares of the samples lie, by column; each from 0 to 1."""
+        """Values below which shares of the samples, 0 to 1, lie, by column; else InputError."""
         wanted = finite_array("shares", shares, "1")
         if wanted.ndim > 1 or not wanted.size or not ((wanted >= 0.0) & (wanted <= 1.0)).all():
             raise InputError("shares of quantiles must be numbers from 0 to 1")

@@ -41,8 +41,9 @@ def doubts(
     """A sentence for each number that was found and that no puck has; ``radius`` m: as given.
 
     >>> tall = Number(10.0, 0.1, 9.8, 10.2, "m", "follows")
-    >>> doubts({"height": tall}, (), 0.026)[0][:55]
-    'A height of 10 m is 385 times the radius, as no puck is'
+    >>> said = doubts({"height": tall}, (), 0.026)[0]
+    >>> said[:55], "the frames a second may be wrong" in said
+    ('A height of 10 m is 385 times the radius, as no puck is', True)
     """
     said = []
     result = {
@@ -59,8 +60,8 @@ def doubts(
     if not said and height is not None and height.value > _TALL * true and height.low > true:
         said.append(
             f"A height of {height.value:.3g} m is {height.value / true:.3g} times the radius, as "
-            f"no puck is: the path bends for another reason, or the floor slopes; or {_UNITS}; give "
-            "the height if it is known"
+            "no puck is: the path bends for another reason, or the floor slopes; or "
+            f"{_UNITS}; give the height if it is known"
         )
     if own is not None and not 1.0 / _OTHER < own.value / radius < _OTHER:
         said.append(

@@ -44,7 +44,7 @@ class Restitution:
         raise NotImplementedError
 
     def __call__(self, speed: npt.ArrayLike) -> FloatArray:
-        """The restitution at speeds ≥ 0 of approach, m/s; NaN beyond the end of a table.
+        """The restitution at speeds of approach, m/s, ≥ 0, else InputError; NaN beyond a table.
 
         >>> Plastic(0.1)([0.05, 0.2]).round(6).tolist()
         [1.0, 0.930626]

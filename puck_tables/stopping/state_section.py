@@ -60,7 +60,8 @@ _OF_STOPS = [0, 1, 2, 4]  # time, along, across, body angle
 _FUNCTIONS = 6  # these, R and S
 # of the constants
 _SLOW, _FAST, _LAST, _BY_SLOW, _BY_FAST, _TURNING, _TURN_SLOW, _TURN_FAST = range(8)
-_CLOSE, _MOST = 1e-12, 80  # of ln Q; secants at most
+# of ln Q, as good as there; before the last secant; secants at most
+_ROUNDED, _CLOSE, _MOST = 1e-12, 1e-8, 80
 _LEAST = 1e-300  # its logarithm is a number
 _FALLEN = -math.log(TURN_SHARE)  # ln Q, when the heading of a puck at rest is read
 
@@ -262,7 +263,7 @@ def _x_after(
     for _ in range(_MOST):
         there = _place_at(x, is_fast, section, constants)
         error = (there[1] if with_time else there[0]) - begin + fall
-        if abs(error) <= _CLOSE or x == before:
+        if abs(error) <= _ROUNDED or x == before:
             break
         low, high = (x, high) if error > 0.0 else (low, x)
         slope = (error - error_before) / (x - before)
@@ -270,6 +271,8 @@ def _x_after(
         x -= error / slope if slope < 0.0 else -1.0
         if not low < x < high:
             x = 0.5 * (low + high) if high < math.inf else low + 2.0 * (low - x0) + 1.0
+        elif abs(error) <= _CLOSE:
+            break
     return x
 
 

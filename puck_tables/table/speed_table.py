@@ -152,7 +152,8 @@ class SpeedTable(Table):
     def integrals(self, phi: npt.ArrayLike, speed: npt.ArrayLike) -> PatchIntegrals:
         """The interpolated integrals, see :func:`puck_tables.contact.speed_quadrature`.
 
-        Arguments and errors as of :meth:`resultants`.
+        At slip angles in [−π/2, π/2] and speeds Q = hypot(v, rω), m/s, with v + r|ω| within the
+        table; InputError else, nothing is extrapolated.
         """
         angle, Q = broadcast(phi=checked_phi(phi), speed=checked_speed(speed))
         direction = slip_direction(angle)

@@ -121,7 +121,10 @@ class Running(Playing):
         return ends[self._place]
 
     def at(self, time: float) -> FloatArray:
-        """States (pucks, 6) at any time ≥ 0: as they were, or will be if nobody interferes."""
+        """States (pucks, 6) at a time: as they were, or will be if nobody interferes.
+
+        ``time``: s, ≥ 0, else InputError.
+        """
         moment = real("time", time, "s")
         if not moment >= 0.0:
             raise InputError(f"time must not be negative, got {moment:g} s")

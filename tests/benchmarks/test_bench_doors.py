@@ -60,10 +60,13 @@ def test_stops(measure: Any, rng: np.random.Generator, way: str):
 
 
 @pytest.mark.benchmark(group="states of many pucks, one time each")
-@pytest.mark.parametrize("way", ["one after the other", "at once"])
+@pytest.mark.parametrize("way", [
+    "one after the other", "at once", "of another law, integrated", "of another law, looked up",
+])  # fmt: skip
 def test_states(measure: Any, rng: np.random.Generator, way: str):
-    n = FEW if way == "one after the other" else LAUNCHES
+    n = FEW if way == "one after the other" or "integrated" in way else LAUNCHES
     velocity, spin, delta = random_launches(rng, n)
+    other = Puck.similar(delta=0.6, pressure="hertz", gyration=0.6)
     times = rng.uniform(0.0, 2.0, n)
     rows = list(zip(velocity.tolist(), spin.tolist(), times.tolist(), delta.tolist(), strict=True))
 
@@ -74,7 +77,10 @@ def test_states(measure: Any, rng: np.random.Generator, way: str):
     ways = {
         "one after the other": one_by_one,
         "at once": lambda: states(velocity, spin, times, delta=delta, threads=1),
-    }
+    } | dict.fromkeys(
+        ("of another law, integrated", "of another law, looked up"),
+        lambda: other.states(velocity, spin, times, threads=1),
+    )  # fmt: skip
     measure(way, ways[way], items=n, unit="state")
 
 
