@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from any_puck import stops_by_truth
 from pucks import simulate
 from rarely import nightly, thorough
 
-from puck_tables import law_of
+from puck_tables import Puck, law_of
 from puck_tables.contact import loaded_share, one_sided_resultants
 from puck_tables.contact.laws import HOMOGENEOUS
 from puck_tables.errors import AccuracyError, ContactError, InputError
@@ -295,3 +296,10 @@ def test_refusals():
         simulate((1, 0), 1.0, delta=2.0, tol=1e-12)
     assert simulate((1, 0), 1.0, delta=3.96, tol=1e-6).least_loaded_share < 0.4
     assert float(one_sided_resultants(0.0, 3.96).spin) > 0.0
+
+
+def test_texts_of_numpy_are_texts(tmp_path: Path):
+    puck = Puck(0.1, friction=0.1, pressure=np.array(["galin"])[0], name=np.array(["a"])[0])
+    law = law_of(np.array(["hertz"])[0])
+    assert {type(text) for text in (puck.pressure, puck.name, law.name)} == {str}
+    puck.simulate((1.0, 0.0), 3.0).save(tmp_path / "run.h5")  # whose texts are no arrays

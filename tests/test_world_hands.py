@@ -464,7 +464,7 @@ REFUSED: list[tuple[Callable[[pt.World], Any], str]] = [
     (lambda w: w.drive(0, (1e200, 0.0)), "use other units"),
     (lambda w: w.apply_force(0, (1.0, 0.0), duration=1.0), "mallet is driven: no force moves it"),
     (lambda w: w.apply_force(1, (1.0, 0.0), duration=0.0), "duration"),
-    (lambda w: w.strike(0, (1.0, 0.0)), "is driven along its path"),
+    (lambda w: w.strike(0, (1.0, 0.0)), "is driven along its path: drive leads it"),
     (lambda w: w.strike(1, velocity=(1e200, 0.0)), "use other units"),
     (lambda w: w.advance(-1.0), "duration must not be negative"),
 ]

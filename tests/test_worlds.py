@@ -362,7 +362,7 @@ BAD = [
     (lambda w: w.advance(-1.0), "duration must not be negative"),
     (lambda w: w.advance([1.0, 2.0]), "duration must be a number"),
     (lambda w: w.strike("nobody", (1, 0)), "no puck 'nobody'"),
-    (lambda w: w.strike("mallet", (1, 0)), "mallet is driven along its path"),
+    (lambda w: w.strike("mallet", (1, 0)), "mallet is driven along its path: drive leads it"),
     (lambda w: w.strike(1, (1, math.nan)), "velocity must be finite"),
     (lambda w: w.strike(1, [1.0, 2.0, 3.0]), r"velocity must have the shape \(2,\) or \(3, 2\)"),
     (lambda w: w.strike(1, None, [1.0, 2.0]), r"spin must have the shape \(\) or \(3,\)"),

@@ -185,7 +185,7 @@ def _read(kind: Kind, value: Any, path: str, reading: Reading, default: Any) -> 
         good = isinstance(value, str) and kind.takes(value)
         if not good or (kind.choices and value not in kind.choices):
             reading.fault(path, value, kind.allowed())
-        return value
+        return str(value) if good else value  # a text of NumPy is one, too, and files hold none
     if kind.shape == "colour":
         if not isinstance(value, str) or (value and not is_colour(value)):
             hint = meant(value.lower(), COLOURS, 0.7) if isinstance(value, str) else ""

@@ -196,7 +196,7 @@ def law_of(text: str) -> Law:
     instance("the pressure law", text, str)
     kind, colon, rest = text.partition(":")
     if text in _NAMED:
-        return Law(text, (1.0,), _NAMED[text])
+        return Law(str(text), (1.0,), _NAMED[text])
     if kind == "annulus" and colon:
         try:
             inner = float(rest)

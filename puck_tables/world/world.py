@@ -96,7 +96,7 @@ class World(Running):
         """
         i = self._in_play(puck)
         if self._engine.discs[i, INV_MASS] == 0.0:
-            raise InputError(f"{self._name(i)} is driven along its path")
+            raise InputError(f"{self._name(i)} is driven along its path: drive leads it")
         row = row_of(None, None, velocity, spin)
         if impulse is not None:
             state, disc = self._all_now()[i], self._engine.discs[i]

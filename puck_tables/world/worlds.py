@@ -161,7 +161,8 @@ class Worlds(Together):
         """
         i, some = int(self._place[number_of(puck, self.names)]), self._some(boards)
         if self._first._engine.discs[i, INV_MASS] == 0.0:
-            raise InputError(f"{self.names[self._order[i]]} is driven along its path")
+            name = self.names[self._order[i]]
+            raise InputError(f"{name} is driven along its path: drive leads it")
         self._refuse_gone(i, some)
         self._put(g.STRUCK, i, some, self._rows(len(some), None, None, velocity, spin))
 
