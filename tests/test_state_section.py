@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 import pytest
+from any_puck import motion_by_truth
 
 from puck_tables import Puck
 from puck_tables.motion.body import body_of
 from puck_tables.stopping.state_section import MANY, state_section
-from tests.any_puck import motion_by_truth
 
 NAMES = ("x", "y", "heading", "orientation", "speed", "spin")
 USUAL = [("hertz", 0.8, 0.6), ("uniform", 0.5, 0.3)]  # one with a limit, one that ends sliding
