@@ -346,7 +346,8 @@ def _first(value: Any) -> float:
         return value
     if isinstance(value, tuple | list):
         return float(value[0])
-    return value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high)
+    middle: float = value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high)
+    return middle
 
 
 def _all(value: Any) -> Any:
