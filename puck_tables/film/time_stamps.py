@@ -21,7 +21,7 @@ _TELLING = 3  # of the farthest stamps, where nearer ones have more digits behin
 _WHOLE = 1e-3  # of a unit: so near to whole ones clocks of years are
 _FINE, _LOOSE = 1e-3, 1.1  # of a frame: rounding that nobody sees; of the unit: slope of the line
 _SKIPS = 1.75  # of a usual step: more, and a frame was left out
-_NTSC = 1.001  # 30/1.001 frames a second, and the like
+_NTSC, _LIKELY = 1.001, 3.0  # 30/1.001 frames a second, and the like; of the step's deviation
 
 
 def times_of(
@@ -40,7 +40,10 @@ def times_of(
         words = f"each row a frame, {how.fps:.9g} a second, as given"
         if body.time is None:
             return even, [words]
-        if not np.ptp(body.time - even) <= _LOOSE * _unit_of(np.unique(body.time)):
+        known = ~np.isnan(body.time)
+        if known.any() and not (
+            np.ptp((body.time - even)[known]) <= _LOOSE * _unit_of(np.unique(body.time[known]))
+        ):
             raise InputError(
                 f"{path} has times, and they are not those of {how.fps:.9g} frames a second, one a "
                 "row: leave fps (--fps) out; or leave the times out where they are wrong, as of a "
@@ -109,8 +112,8 @@ def of_even_frames(
     if unit < _FINE * usual or not _FINE * unit < off < _LOOSE * unit:
         return times
     rates = np.maximum([np.rint(1.0 / step), np.rint(_NTSC / step) / _NTSC], 1.0)
-    usual = float(1.0 / rates[np.abs(1.0 / rates - step).argmin()])
-    step = usual if abs(usual - step) < 3.0 * spread else step
+    nominal = float(1.0 / rates[np.abs(1.0 / rates - step).argmin()])
+    step = nominal if abs(nominal - step) < _LIKELY * spread else step
     even = stamps[0] + step * frame
     note = f"times are rounded to {unit:.3g} s: taken as even, {1.0 / step:.6g} frames a second"
     even = np.append(even, np.nan)  # of what is no number, behind all stamps

@@ -199,6 +199,22 @@ def state_there(
 
 
 @inlined
+def state_at_one_angle(
+    left: float, stop: Numbers, speed: float, spin: float, turn: float
+) -> Numbers:
+    """X, y, heading, body angle, v and ω where φ stays as at the launch, or at rest.
+
+    ``left``: the share of the time to the stop that is left; ``stop``: x, y, body angle; ``speed``,
+    ``spin``: of the launch; ``turn``: the heading at rest.
+    """
+    done = (1.0 - left) * (1.0 + left)
+    return (
+        stop[0] * done, stop[1] * done, turn if left == 0.0 else 0.0, stop[2] * done, left * speed,
+        left * spin,
+    )  # fmt: skip
+
+
+@inlined
 def place_after(
     log_left: float, sign: float, log_n: float, kappa: float, turning: float, delta: float
 ) -> tuple[bool, float, float]:
@@ -268,10 +284,9 @@ def look_up_state(puck: FloatArray, time: float, splines: FloatArray, out: Float
     elapsed = time / known[TIME]
     if known[SIGN_N] == 0.0 or not 0.0 < elapsed < 1.0:  # at rest, the launch, or φ constant
         left = 1.0 - elapsed if time < known[TIME] else 0.0
-        done = (1.0 - left) * (1.0 + left)
-        out[PUCK_X], out[PUCK_Y], out[ORIENTATION] = x * done, y * done, body * done
-        out[SPEED], out[SPIN] = left * known[SPEED0], left * spin
-        out[HEADING] = known[TURN] if left == 0.0 else 0.0
+        (out[PUCK_X], out[PUCK_Y], out[HEADING], out[ORIENTATION], out[SPEED], out[SPIN]) = (
+            state_at_one_angle(left, (x, y, body), known[SPEED0], spin, known[TURN])
+        )
         return
     delta, turning = puck[3], known[TURNING]
     is_fast, log_y, swung = place_after(

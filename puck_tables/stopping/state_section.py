@@ -19,7 +19,8 @@ sin φ or cos φ there, in
     x = ln(s²/(m − s²))    or    ln(c²/(m − c²))
 
 it falls like −x/2A (or −x/2B) first and like −x/κ last: secants in a bracket find its place in a
-few steps.
+few steps.  (Plain pucks have closed forms, by which both parts go on smoothly across φ₀ and the
+inverse stands in a table: :mod:`puck_tables.stopping.similarity`.)
 
 Source: Salnikova, Treschev, Gallyamov 2012, eq. 6.2–6.7, where the motion is found in quadratures.
 """
@@ -40,9 +41,9 @@ from puck_tables.kernels.compile import inlined, look_up, patience, weighted_row
 from puck_tables.kernels.quadratic import LINE, basis
 from puck_tables.motion.body import UnitPuck
 from puck_tables.motion.path import TURN_SHARE
-from puck_tables.motion.state import HEADING, ORIENTATION, PUCK_X, PUCK_Y, SPEED, SPIN, STATE_ROWS
+from puck_tables.motion.state import HEADING, SPEED, STATE_ROWS
 from puck_tables.stopping.launch_arrays import in_chunks
-from puck_tables.stopping.similarity_lookup import state_there
+from puck_tables.stopping.similarity_lookup import state_at_one_angle, state_there
 from puck_tables.stopping.state_values import TOL, directions, integrate, states_of
 from puck_tables.stopping.stop_section import StopSection, place_of, stop_section_for
 from puck_tables.table.friction_section import FrictionSection
@@ -286,14 +287,15 @@ def fill_section_states(
     Headings from that at the launch; ``section`` and ``constants`` of a StateSection, whose pucks
     they are.
     """
-    held, is_fast, x0, rest = -1, False, 0.0, 0.0
-    slip = speed = stop_time = stop_x = stop_y = stop_body = 0.0
+    held, is_fast, is_pure = -1, False, False
+    x0 = rest = slip = speed = stop_time = 0.0
+    stop = 0.0, 0.0, 0.0
     here = _place_at(0.0, True, section, constants)
     for n in range(times.size):
         patience(1)
         mine = which[n]
         vx, vy, spin = launches[0, mine], launches[1, mine], launches[2, mine]
-        decel, radius = launches[4, mine], launches[5, mine]
+        decel, radius, around = launches[4, mine], launches[5, mine], 1.0 if spin > 0.0 else -1.0
         if mine != held:
             held = mine
             speed, edge = math.hypot(vx, vy), radius * spin
@@ -303,34 +305,27 @@ def fill_section_states(
             here = _place_at(x0, is_fast, section, constants)
             scale = slip / decel
             along, across = scale * here[6], edge / decel * here[7]
-            stop_time, stop_body = scale * here[5], scale * spin * here[8]
-            stop_x, stop_y = along * vx - across * vy, along * vy + across * vx
-            rest = math.nan
+            stop_time = scale * here[5]
+            stop = along * vx - across * vy, along * vy + across * vx, scale * spin * here[8]
+            is_pure = speed == 0.0 or spin == 0.0
+            rest = 0.0 if is_pure else math.nan
         left = 1.0 - times[n] / stop_time if times[n] < stop_time else 0.0
-        is_pure = speed == 0.0 or spin == 0.0
+        if left == 0.0 and math.isnan(rest):
+            x = _x_after(x0, _FALLEN, False, here[0], is_fast, section, constants)
+            rest = around * (_place_at(x, is_fast, section, constants)[2] - here[2])
         if is_pure or left == 0.0 or left == 1.0:
-            if left == 0.0 and math.isnan(rest):
-                x = _x_after(x0, _FALLEN, False, here[0], is_fast, section, constants)
-                rest = 0.0 if is_pure else _place_at(x, is_fast, section, constants)[2] - here[2]
-            done = (1.0 - left) * (1.0 + left)
-            out[PUCK_X, n], out[PUCK_Y, n] = stop_x * done, stop_y * done
-            out[HEADING, n] = 0.0 if left > 0.0 else (rest if spin > 0.0 else -rest)
-            out[ORIENTATION, n], out[SPEED, n] = stop_body * done, left * speed
-            out[SPIN, n] = left * spin
-            continue
-        x = _x_after(x0, -math.log(left), True, here[1], is_fast, section, constants)
-        _, _, turn, cosine, sine, time, along, across, body = _place_at(
-            x, is_fast, section, constants
-        )
-        turn -= here[2]
-        (
-            out[PUCK_X, n], out[PUCK_Y, n], out[HEADING, n], out[ORIENTATION, n], out[SPEED, n],
-            out[SPIN, n],
-        ) = state_there(
-            (vx, vy, spin, 1.0, decel, radius, speed), (stop_x, stop_y, stop_body), sine > cosine,
-            2.0 * min(cosine, sine) / (cosine + sine), slip * (left * here[5] / time),
-            turn if spin > 0.0 else -turn, (along, across, body),
-        )  # fmt: skip
+            state = state_at_one_angle(left, stop, speed, spin, rest)
+        else:
+            x = _x_after(x0, -math.log(left), True, here[1], is_fast, section, constants)
+            there = _place_at(x, is_fast, section, constants)
+            smaller, larger = min(there[3], there[4]), max(there[3], there[4])
+            state = state_there(
+                (vx, vy, spin, 1.0, decel, radius, speed), stop, there[4] > there[3],
+                2.0 * smaller / (smaller + larger), slip * (left * here[5] / there[5]),
+                around * (there[2] - here[2]), there[6:],
+            )  # fmt: skip
+        for k in range(STATE_ROWS):
+            out[k, n] = state[k]
 
 
 def fill_others(
